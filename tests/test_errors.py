@@ -33,7 +33,7 @@ def _exceptions(module: str) -> list[type[Exception]]:
     return [kind for _, kind in classes if issubclass(kind, Exception) and kind.__module__ == module]
 
 
-OF_RCLPY = "thymio_sim_ros.portable_ros.rclpy."
+OF_RCLPY = ("thymio_sim_ros.portable_ros.rclpy.", "thymio_sim_ros.portable_ros.rclpy_parts.")
 """Its exceptions have the bases of rclpy's."""
 
 

@@ -13,13 +13,13 @@ from tests.patience import PATIENCE_S
 from thymio_sim_ros.portable_ros.messages.action_class import action_type
 from thymio_sim_ros.portable_ros.messages.message_class import message_type, service_type
 from thymio_sim_ros.portable_ros.rclpy.action import ActionClient, ActionServer, CancelResponse
-from thymio_sim_ros.portable_ros.rclpy.action.goal_state import GoalEvent, GoalState, next_state
 from thymio_sim_ros.portable_ros.rclpy.context import Context
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor
 from thymio_sim_ros.portable_ros.rclpy.impl.rcutils_logger import add_sink, remove_sink
 from thymio_sim_ros.portable_ros.rclpy.node import Node
 from thymio_sim_ros.portable_ros.rclpy.task import Future
 from thymio_sim_ros.portable_ros.rclpy.time import Time
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_state import GoalEvent, GoalState, next_state
 
 Fibonacci = action_type("test_msgs/action/Fibonacci")
 CancelGoal = service_type("action_msgs/srv/CancelGoal")

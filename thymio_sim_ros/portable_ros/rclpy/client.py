@@ -15,8 +15,8 @@ from thymio_sim_ros.portable_ros.graph.time_base import note_query
 from thymio_sim_ros.portable_ros.messages import cdr
 from thymio_sim_ros.portable_ros.messages.message_class import SrvRequestT, SrvResponseT
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
-from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription, ServiceEntity
 from thymio_sim_ros.portable_ros.rclpy.task import Future
+from thymio_sim_ros.portable_ros.rclpy_parts.service_entity import ServiceDescription, ServiceEntity
 
 __all__ = ["Client"]
 

@@ -11,14 +11,14 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from thymio_sim_ros.portable_ros.rclpy.executor_base import (
+from thymio_sim_ros.portable_ros.rclpy.task import await_or_execute
+from thymio_sim_ros.portable_ros.rclpy_parts.executor_base import (
     ConditionReachedException,
     Executor,
     ExternalShutdownException,
     ShutdownException,
     TimeoutException,
 )
-from thymio_sim_ros.portable_ros.rclpy.task import await_or_execute
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.context import Context

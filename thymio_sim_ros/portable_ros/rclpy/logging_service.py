@@ -8,7 +8,7 @@ from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy.logging import get_logger_level, set_logger_level
 
 if TYPE_CHECKING:
-    from thymio_sim_ros.portable_ros.rclpy.node_endpoints import NodeEndpoints
+    from thymio_sim_ros.portable_ros.rclpy_parts.node_endpoints import NodeEndpoints
 
 __all__ = ["LoggingService"]
 

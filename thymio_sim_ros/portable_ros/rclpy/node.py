@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError as NodeNameNonExistentError
 from thymio_sim_ros.portable_ros.rclpy.logging_service import LoggingService
-from thymio_sim_ros.portable_ros.rclpy.node_endpoints import NodeEndpoints
-from thymio_sim_ros.portable_ros.rclpy.node_graph import NodeGraph
-from thymio_sim_ros.portable_ros.rclpy.node_rosout import Rosout
 from thymio_sim_ros.portable_ros.rclpy.parameter import Parameter
 from thymio_sim_ros.portable_ros.rclpy.parameter_service import ParameterService
 from thymio_sim_ros.portable_ros.rclpy.qos import qos_profile_parameter_events
 from thymio_sim_ros.portable_ros.rclpy.time_source import TimeSource
 from thymio_sim_ros.portable_ros.rclpy.type_description_service import TypeDescriptionService
+from thymio_sim_ros.portable_ros.rclpy_parts.node_endpoints import NodeEndpoints
+from thymio_sim_ros.portable_ros.rclpy_parts.node_graph import NodeGraph
+from thymio_sim_ros.portable_ros.rclpy_parts.node_rosout import Rosout
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.context import Context

@@ -7,19 +7,19 @@ from collections.abc import Callable
 from enum import Enum, IntEnum
 from typing import Any, ClassVar
 
-from thymio_sim_ros.portable_ros.rclpy.checked_field import checked_field
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import DurabilityPolicy as DurabilityPolicy
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import HistoryPolicy as HistoryPolicy
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import LivelinessPolicy as LivelinessPolicy
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSDurabilityPolicy as QoSDurabilityPolicy
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSHistoryPolicy as QoSHistoryPolicy
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSLivelinessPolicy as QoSLivelinessPolicy
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSPolicyEnum as QoSPolicyEnum
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSPolicyKind as QoSPolicyKind
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import QoSReliabilityPolicy as QoSReliabilityPolicy
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import ReliabilityPolicy as ReliabilityPolicy
-from thymio_sim_ros.portable_ros.rclpy.qos_policies import qos_policy_name_from_kind as qos_policy_name_from_kind
+from thymio_sim_ros.portable_ros.rclpy_parts.checked_field import checked_field
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import DurabilityPolicy as DurabilityPolicy
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import HistoryPolicy as HistoryPolicy
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import LivelinessPolicy as LivelinessPolicy
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import QoSDurabilityPolicy as QoSDurabilityPolicy
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import QoSHistoryPolicy as QoSHistoryPolicy
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import QoSLivelinessPolicy as QoSLivelinessPolicy
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import QoSPolicyEnum as QoSPolicyEnum
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import QoSPolicyKind as QoSPolicyKind
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import QoSReliabilityPolicy as QoSReliabilityPolicy
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import ReliabilityPolicy as ReliabilityPolicy
+from thymio_sim_ros.portable_ros.rclpy_parts.qos_policies import qos_policy_name_from_kind as qos_policy_name_from_kind
 
 
 class InvalidQoSProfileException(Exception):

@@ -14,7 +14,7 @@ from thymio_sim_ros.portable_ros.rclpy.qos import QoSPolicyKind, QoSProfile
 from thymio_sim_ros.portable_ros.rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
-    from thymio_sim_ros.portable_ros.rclpy.node_parameters import NodeParameters
+    from thymio_sim_ros.portable_ros.rclpy_parts.node_parameters import NodeParameters
 
 __all__ = ["InvalidQosOverridesError", "QoSOverridingOptions", "QosCallbackResult", "QosCallbackType"]
 

@@ -9,8 +9,8 @@ from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.graph.event_queue import EventQueue
 from thymio_sim_ros.portable_ros.messages import cdr
 from thymio_sim_ros.portable_ros.messages.message_class import Message
-from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription, ServiceEntity
 from thymio_sim_ros.portable_ros.rclpy.task import await_or_execute
+from thymio_sim_ros.portable_ros.rclpy_parts.service_entity import ServiceDescription, ServiceEntity
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd

@@ -9,10 +9,10 @@ from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.graph.time_base import simulated_ns
 from thymio_sim_ros.portable_ros.rclpy.clock import ROSClock
 from thymio_sim_ros.portable_ros.rclpy.clock_type import ClockType
-from thymio_sim_ros.portable_ros.rclpy.node_endpoints import NodeEndpoints
 from thymio_sim_ros.portable_ros.rclpy.parameter import Parameter
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, ReliabilityPolicy
 from thymio_sim_ros.portable_ros.rclpy.time import Time
+from thymio_sim_ros.portable_ros.rclpy_parts.node_endpoints import NodeEndpoints
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.subscription import Subscription

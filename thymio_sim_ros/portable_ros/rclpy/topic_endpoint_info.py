@@ -6,9 +6,9 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Any, ClassVar
 
-from thymio_sim_ros.portable_ros.rclpy.checked_field import checked_field
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, qos_profile_unknown
 from thymio_sim_ros.portable_ros.rclpy.type_hash import TypeHash
+from thymio_sim_ros.portable_ros.rclpy_parts.checked_field import checked_field
 
 __all__ = ["TopicEndpointInfo", "TopicEndpointTypeEnum"]
 

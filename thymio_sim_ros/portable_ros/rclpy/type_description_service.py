@@ -13,7 +13,7 @@ from thymio_sim_ros.portable_ros.messages.type_descriptions import HASH_PREFIX, 
 from thymio_sim_ros.portable_ros.rclpy.logging import get_logger
 
 if TYPE_CHECKING:
-    from thymio_sim_ros.portable_ros.rclpy.node_endpoints import NodeEndpoints
+    from thymio_sim_ros.portable_ros.rclpy_parts.node_endpoints import NodeEndpoints
 
 __all__ = ["START_TYPE_DESCRIPTION_SERVICE_PARAM", "TypeDescriptionService"]
 

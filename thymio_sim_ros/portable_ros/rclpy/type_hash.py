@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from thymio_sim_ros.portable_ros.rclpy.checked_field import checked_field
+from thymio_sim_ros.portable_ros.rclpy_parts.checked_field import checked_field
 
 __all__ = ["TypeHash"]
 

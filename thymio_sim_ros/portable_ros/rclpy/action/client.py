@@ -11,16 +11,6 @@ from typing import Any, Generic, TypeVar
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.messages.action_class import Action, FeedbackT, GoalT, ResultT
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
-from thymio_sim_ros.portable_ros.rclpy.action.action_parts import (
-    CANCEL_GOAL,
-    FEEDBACK,
-    GET_RESULT,
-    SEND_GOAL,
-    STATUS,
-    ActionParts,
-)
-from thymio_sim_ros.portable_ros.rclpy.action.client_goal_handle import ClientGoalHandle as ClientGoalHandle
-from thymio_sim_ros.portable_ros.rclpy.action.goal_state import FINAL
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.client import Client
 from thymio_sim_ros.portable_ros.rclpy.logging import get_logger
@@ -30,9 +20,19 @@ from thymio_sim_ros.portable_ros.rclpy.qos import (
     qos_profile_action_status_default,
     qos_profile_services_default,
 )
-from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription
 from thymio_sim_ros.portable_ros.rclpy.task import Future, await_or_execute
 from thymio_sim_ros.portable_ros.rclpy.waitable import NumberOfEntities
+from thymio_sim_ros.portable_ros.rclpy_parts.action_parts import (
+    CANCEL_GOAL,
+    FEEDBACK,
+    GET_RESULT,
+    SEND_GOAL,
+    STATUS,
+    ActionParts,
+)
+from thymio_sim_ros.portable_ros.rclpy_parts.client_goal_handle import ClientGoalHandle as ClientGoalHandle
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_state import FINAL
+from thymio_sim_ros.portable_ros.rclpy_parts.service_entity import ServiceDescription
 
 T = TypeVar("T")
 

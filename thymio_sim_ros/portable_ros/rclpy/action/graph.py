@@ -7,8 +7,8 @@ from typing import Any
 
 from thymio_sim_ros.portable_ros.messages.interface_files import FEEDBACK_MESSAGE
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError, RCLError
-from thymio_sim_ros.portable_ros.rclpy.action.action_parts import FEEDBACK, full_name
-from thymio_sim_ros.portable_ros.rclpy.node_graph import NamesAndTypes, NodeGraph
+from thymio_sim_ros.portable_ros.rclpy_parts.action_parts import FEEDBACK, full_name
+from thymio_sim_ros.portable_ros.rclpy_parts.node_graph import NamesAndTypes, NodeGraph
 
 __all__ = [
     "get_action_client_names_and_types_by_node",

@@ -10,32 +10,6 @@ from typing import Any, Generic
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.messages.action_class import Action, FeedbackT, GoalT, ResultT
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
-from thymio_sim_ros.portable_ros.rclpy.action.action_parts import (
-    CANCEL_GOAL,
-    FEEDBACK,
-    GET_RESULT,
-    SEND_GOAL,
-    STATUS,
-    ActionParts,
-    Respond,
-)
-from thymio_sim_ros.portable_ros.rclpy.action.goal_callbacks import (
-    AcceptedCallback,
-    CancelCallback,
-    GoalCallback,
-)
-from thymio_sim_ros.portable_ros.rclpy.action.goal_callbacks import CancelResponse as CancelResponse
-from thymio_sim_ros.portable_ros.rclpy.action.goal_callbacks import GoalResponse as GoalResponse
-from thymio_sim_ros.portable_ros.rclpy.action.goal_callbacks import default_cancel_callback as default_cancel_callback
-from thymio_sim_ros.portable_ros.rclpy.action.goal_callbacks import default_goal_callback as default_goal_callback
-from thymio_sim_ros.portable_ros.rclpy.action.goal_callbacks import (
-    default_handle_accepted_callback as default_handle_accepted_callback,
-)
-from thymio_sim_ros.portable_ros.rclpy.action.goal_state import GoalEvent as GoalEvent
-from thymio_sim_ros.portable_ros.rclpy.action.goal_state import to_cancel
-from thymio_sim_ros.portable_ros.rclpy.action.result_expiry import ResultExpiry
-from thymio_sim_ros.portable_ros.rclpy.action.server_goal_handle import ExecuteCallback
-from thymio_sim_ros.portable_ros.rclpy.action.server_goal_handle import ServerGoalHandle as ServerGoalHandle
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.node import Node
 from thymio_sim_ros.portable_ros.rclpy.qos import (
@@ -45,6 +19,32 @@ from thymio_sim_ros.portable_ros.rclpy.qos import (
 )
 from thymio_sim_ros.portable_ros.rclpy.task import Future, await_or_execute
 from thymio_sim_ros.portable_ros.rclpy.waitable import NumberOfEntities
+from thymio_sim_ros.portable_ros.rclpy_parts.action_parts import (
+    CANCEL_GOAL,
+    FEEDBACK,
+    GET_RESULT,
+    SEND_GOAL,
+    STATUS,
+    ActionParts,
+    Respond,
+)
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_callbacks import (
+    AcceptedCallback,
+    CancelCallback,
+    GoalCallback,
+)
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_callbacks import CancelResponse as CancelResponse
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_callbacks import GoalResponse as GoalResponse
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_callbacks import default_cancel_callback as default_cancel_callback
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_callbacks import default_goal_callback as default_goal_callback
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_callbacks import (
+    default_handle_accepted_callback as default_handle_accepted_callback,
+)
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_state import GoalEvent as GoalEvent
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_state import to_cancel
+from thymio_sim_ros.portable_ros.rclpy_parts.result_expiry import ResultExpiry
+from thymio_sim_ros.portable_ros.rclpy_parts.server_goal_handle import ExecuteCallback
+from thymio_sim_ros.portable_ros.rclpy_parts.server_goal_handle import ServerGoalHandle as ServerGoalHandle
 
 
 class ActionServer(Generic[GoalT, ResultT, FeedbackT]):

@@ -9,8 +9,8 @@ from typing import Any
 
 from thymio_sim_ros.portable_ros.graph import log_levels
 from thymio_sim_ros.portable_ros.graph.time_base import system_ns
-from thymio_sim_ros.portable_ros.rclpy.impl.log_filters import LogFilter, check_options, filters_of
 from thymio_sim_ros.portable_ros.rclpy.impl.logging_severity import LoggingSeverity
+from thymio_sim_ros.portable_ros.rclpy_parts.log_filters import LogFilter, check_options, filters_of
 
 __all__ = ["RcutilsLogger"]
 

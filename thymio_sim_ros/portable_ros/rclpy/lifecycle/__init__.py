@@ -3,7 +3,7 @@
 from thymio_sim_ros.portable_ros.rclpy.lifecycle.managed_entity import ManagedEntity, SimpleManagedEntity
 from thymio_sim_ros.portable_ros.rclpy.lifecycle.node import LifecycleNode, LifecycleNodeMixin, LifecycleState
 from thymio_sim_ros.portable_ros.rclpy.lifecycle.publisher import LifecyclePublisher
-from thymio_sim_ros.portable_ros.rclpy.lifecycle.state_machine import TransitionCallbackReturn
+from thymio_sim_ros.portable_ros.rclpy_parts.state_machine import TransitionCallbackReturn
 
 Node = LifecycleNode
 NodeMixin = LifecycleNodeMixin

@@ -6,7 +6,7 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-from thymio_sim_ros.portable_ros.rclpy.lifecycle.state_machine import LifecycleState, TransitionCallbackReturn
+from thymio_sim_ros.portable_ros.rclpy_parts.state_machine import LifecycleState, TransitionCallbackReturn
 
 __all__ = ["ManagedEntity", "SimpleManagedEntity"]
 

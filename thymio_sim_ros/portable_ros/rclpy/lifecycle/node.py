@@ -9,16 +9,16 @@ from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.lifecycle.managed_entity import ManagedEntity
 from thymio_sim_ros.portable_ros.rclpy.lifecycle.publisher import LifecyclePublisher
-from thymio_sim_ros.portable_ros.rclpy.lifecycle.state_machine import (
+from thymio_sim_ros.portable_ros.rclpy.node import Node
+from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
+from thymio_sim_ros.portable_ros.rclpy_parts.state_machine import (
     STATES,
     TRANSITIONS,
     StateMachine,
     Transition,
     TransitionCallbackReturn,
 )
-from thymio_sim_ros.portable_ros.rclpy.lifecycle.state_machine import LifecycleState as LifecycleState
-from thymio_sim_ros.portable_ros.rclpy.node import Node
-from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
+from thymio_sim_ros.portable_ros.rclpy_parts.state_machine import LifecycleState as LifecycleState
 
 _Ids = ros_types.Transition
 _CALLBACKS = {

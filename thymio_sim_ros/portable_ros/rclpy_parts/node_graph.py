@@ -11,11 +11,11 @@ from thymio_sim_ros.portable_ros.graph.time_base import note_query
 from thymio_sim_ros.portable_ros.messages.type_descriptions import HASH_PREFIX, type_hash
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration, Infinite
-from thymio_sim_ros.portable_ros.rclpy.node_base import NodeBase
 from thymio_sim_ros.portable_ros.rclpy.qos import LivelinessPolicy, QoSProfile
 from thymio_sim_ros.portable_ros.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from thymio_sim_ros.portable_ros.rclpy.type_hash import TypeHash
 from thymio_sim_ros.portable_ros.rclpy.validate_full_topic_name import validate_full_topic_name
+from thymio_sim_ros.portable_ros.rclpy_parts.node_base import NodeBase
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.protocols import GraphNode

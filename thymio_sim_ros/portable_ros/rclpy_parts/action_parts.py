@@ -22,8 +22,8 @@ from thymio_sim_ros.portable_ros.rclpy.waitable import NumberOfEntities
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd
     from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
-    from thymio_sim_ros.portable_ros.rclpy.node_endpoints import NodeEndpoints
     from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
+    from thymio_sim_ros.portable_ros.rclpy_parts.node_endpoints import NodeEndpoints
 
 __all__ = [
     "CANCEL_GOAL",

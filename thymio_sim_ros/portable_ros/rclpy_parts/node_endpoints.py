@@ -18,15 +18,15 @@ from thymio_sim_ros.portable_ros.rclpy.event_handler import (
 )
 from thymio_sim_ros.portable_ros.rclpy.guard_condition import GuardCondition
 from thymio_sim_ros.portable_ros.rclpy.logging import get_logger
-from thymio_sim_ros.portable_ros.rclpy.node_entities import NodeEntities
 from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, qos_profile_services_default
 from thymio_sim_ros.portable_ros.rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
 from thymio_sim_ros.portable_ros.rclpy.service import Service
-from thymio_sim_ros.portable_ros.rclpy.service_entity import ServiceDescription
 from thymio_sim_ros.portable_ros.rclpy.subscription import MessageInfo, Subscription
 from thymio_sim_ros.portable_ros.rclpy.timer import Rate, Timer
 from thymio_sim_ros.portable_ros.rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from thymio_sim_ros.portable_ros.rclpy_parts.node_entities import NodeEntities
+from thymio_sim_ros.portable_ros.rclpy_parts.service_entity import ServiceDescription
 
 __all__ = ["NodeEndpoints"]
 

@@ -8,7 +8,7 @@ from typing import Any, Generic, Protocol, TypeAlias
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.messages.action_class import FeedbackT, GoalT, ResultT
-from thymio_sim_ros.portable_ros.rclpy.action.goal_state import FINAL, GoalEvent, GoalState, next_state
+from thymio_sim_ros.portable_ros.rclpy_parts.goal_state import FINAL, GoalEvent, GoalState, next_state
 
 __all__ = ["ExecuteCallback", "GoalOwner", "ServerGoalHandle"]
 

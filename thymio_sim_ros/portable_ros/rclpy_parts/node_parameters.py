@@ -15,11 +15,11 @@ from thymio_sim_ros.portable_ros.rclpy.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from thymio_sim_ros.portable_ros.rclpy.node_base import NodeBase
 from thymio_sim_ros.portable_ros.rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
-from thymio_sim_ros.portable_ros.rclpy.parameter_declaration import declared
-from thymio_sim_ros.portable_ros.rclpy.parameter_listing import listed
-from thymio_sim_ros.portable_ros.rclpy.parameter_ranges import range_problem, type_problem
+from thymio_sim_ros.portable_ros.rclpy_parts.node_base import NodeBase
+from thymio_sim_ros.portable_ros.rclpy_parts.parameter_declaration import declared
+from thymio_sim_ros.portable_ros.rclpy_parts.parameter_listing import listed
+from thymio_sim_ros.portable_ros.rclpy_parts.parameter_ranges import range_problem, type_problem
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher

@@ -10,12 +10,12 @@ from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup, Mut
 from thymio_sim_ros.portable_ros.rclpy.client import Client
 from thymio_sim_ros.portable_ros.rclpy.event_handler import EventHandler
 from thymio_sim_ros.portable_ros.rclpy.guard_condition import GuardCondition
-from thymio_sim_ros.portable_ros.rclpy.node_parameters import NodeParameters
 from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher
 from thymio_sim_ros.portable_ros.rclpy.service import Service
 from thymio_sim_ros.portable_ros.rclpy.subscription import Subscription
 from thymio_sim_ros.portable_ros.rclpy.timer import Timer
 from thymio_sim_ros.portable_ros.rclpy.waitable import Waitable, WaitableEntity
+from thymio_sim_ros.portable_ros.rclpy_parts.node_parameters import NodeParameters
 
 __all__ = ["NodeEntities"]
 

@@ -7,7 +7,7 @@ from enum import Enum
 from typing import Any, TypeAlias
 
 from thymio_sim_ros.portable_ros.messages.action_class import FeedbackT, GoalT, ResultT
-from thymio_sim_ros.portable_ros.rclpy.action.server_goal_handle import ServerGoalHandle
+from thymio_sim_ros.portable_ros.rclpy_parts.server_goal_handle import ServerGoalHandle
 
 __all__ = [
     "AcceptedCallback",

@@ -11,7 +11,7 @@ from thymio_sim_ros.portable_ros.rclpy.impl.rcutils_logger import add_sink, remo
 from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 
 if TYPE_CHECKING:
-    from thymio_sim_ros.portable_ros.rclpy.node_endpoints import NodeEndpoints
+    from thymio_sim_ros.portable_ros.rclpy_parts.node_endpoints import NodeEndpoints
 
 __all__ = ["Rosout"]
 
