@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from thymio_sim_ros.portable_ros.messages.message_class import message_type
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.context import Context
 from thymio_sim_ros.portable_ros.rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor
@@ -48,3 +49,16 @@ def test_endpoints_of_another_type_are_reported_to_both_and_logged_by_default(
     other_context.shutdown()
     node.destroy_node()
     context.shutdown()
+
+
+def test_after_a_shutdown_the_number_of_matches_is_an_error() -> None:
+    """Programs that wait for a subscription end by it: `ros2 topic pub --once` at Ctrl-C."""
+    context = Context()
+    context.init([])
+    node = Node("counts", context=context, enable_rosout=False, start_parameter_services=False)
+    publisher = node.create_publisher(String, "topic", 1)
+    assert publisher.get_subscription_count() == 0
+    context.shutdown()
+    with pytest.raises(RCLError, match="failed to get subscription count: publisher's context is invalid"):
+        publisher.get_subscription_count()
+    node.destroy_node()

@@ -123,3 +123,26 @@ def test_a_period_without_sleepers_counts_for_the_next_one_and_the_end_of_the_co
     for sleeper in sleepers:
         sleeper.join(PATIENCE_S)
     assert ended == [True, True]
+
+
+class StandIn:
+    """An object that has the attributes of a node, as the tools of ros2cli use it."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._node, name)
+
+
+def test_an_object_that_stands_for_a_node_is_executed(node: Node) -> None:
+    called: list[str] = []
+    guard = node.create_guard_condition(lambda: called.append("rung"))
+    executor: Any = SingleThreadedExecutor(context=node.context)
+    assert executor.add_node(StandIn(node))
+    assert not executor.add_node(node)
+    guard.trigger()
+    executor.spin_once(timeout_sec=PATIENCE_S)
+    assert called == ["rung"]
+    executor.remove_node(StandIn(node))
+    assert executor.get_nodes() == []

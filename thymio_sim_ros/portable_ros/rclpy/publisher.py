@@ -83,8 +83,10 @@ class Publisher(Generic[MsgT]):
             self._send(data)
 
     def get_subscription_count(self) -> int:
-        """The number of matched subscriptions."""
+        """The number of matched subscriptions. Raises RCLError after a shutdown of the context."""
         with self._handle:
+            if not self.context.ok():
+                raise RCLError("failed to get subscription count: publisher's context is invalid")
             return len(self.matched)
 
     def assert_liveliness(self) -> None:

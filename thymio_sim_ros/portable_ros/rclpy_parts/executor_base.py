@@ -102,6 +102,7 @@ class Executor:
 
     def add_node(self, node: Any) -> bool:
         """Execute the callbacks of a node; return whether it is a new one."""
+        node = node.itself
         with self._changed:
             if node in self._nodes:
                 return False
@@ -114,6 +115,7 @@ class Executor:
 
     def remove_node(self, node: Any) -> None:
         """Execute no more callbacks of a node."""
+        node = node.itself
         with self._changed:
             if node in self._nodes:
                 self._nodes.remove(node)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from thymio_sim_ros.portable_ros.graph.arguments import Arguments, parse
 from thymio_sim_ros.portable_ros.graph.entity import Handle
@@ -92,6 +92,11 @@ class NodeBase:
         self._executor = (lambda: None) if new_executor is None else weakref.ref(new_executor)
         if new_executor is not None:
             new_executor.add_node(self)
+
+    @property
+    def itself(self) -> Self:
+        """The node, also by an object that has its attributes: tools such as ros2cli give these to executors."""
+        return self
 
     @property
     def context(self) -> Context:
