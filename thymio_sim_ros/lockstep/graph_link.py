@@ -2,8 +2,8 @@
 
 Each end puts what the other one misses into one list per turn: nodes and endpoints that are new or have gone, then
 messages, requests and responses, in the order in which they were sent. Endpoints of the other process are members of
-the graph (`remote_ends.py`), so that matches, counts and queries need to know nothing of the link, and what passes
-through several links arrives.
+the graph (`graph/remote_ends.py`), so that matches, counts and queries need to know nothing of the link, and what
+passes through several links arrives.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from thymio_sim_ros.lockstep.remote_ends import ENDS, RemoteEnd, RemoteNode
 from thymio_sim_ros.portable_ros.graph.graph import Graph
 from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd, GraphNode, PublisherEnd, Sample
+from thymio_sim_ros.portable_ros.graph.remote_ends import ENDS, Kind, RemoteEnd, RemoteNode
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, qos_profile_services_default
 
@@ -65,8 +65,9 @@ class GraphLink:
         self._told: set[int] = set()
         """Numbers of the local nodes and endpoints that the other end knows."""
         self._nodes: dict[int, RemoteNode] = {}
-        self._ends: dict[int, RemoteEnd] = {}
-        """Remote nodes and endpoints by number."""
+        """Remote nodes by number."""
+        self._owners: dict[int, RemoteNode] = {}
+        """The nodes of remote endpoints by the number of the endpoint."""
         self._is_cut = False
         hub.links.append(self)
 
@@ -93,7 +94,7 @@ class GraphLink:
     def close(self) -> None:
         """Remove all nodes and endpoints of the other process."""
         self._hub.links.remove(self)
-        for number in (*self._ends, *self._nodes):
+        for number in list(self._nodes):
             self._remove(number)
         self._sent.clear()
 
@@ -101,19 +102,19 @@ class GraphLink:
         """Keep nothing more for the other end. Takes no lock: a forked process may have inherited any."""
         self._is_cut = True
 
-    # --- a Sender: what remote endpoints get ---
+    # --- the carrier of remote endpoints ---
 
-    def send_message(self, subscription: int, sample: Sample) -> None:
+    def send_message(self, subscription: RemoteEnd, sample: Sample) -> None:
         """Send a message to a subscription."""
-        self._send(["message", subscription, _text(sample.data), *sample[1:]])
+        self._send(["message", subscription.key, _text(sample.data), *sample[1:]])
 
-    def send_request(self, service: int, client: ClientEnd, sequence: int, request: bytes) -> None:
+    def send_request(self, service: RemoteEnd, client: ClientEnd, sequence: int, request: bytes) -> None:
         """Send the request of a client of this process to a service."""
-        self._send(["request", service, self._number(client), sequence, _text(request)])
+        self._send(["request", service.key, self._number(client), sequence, _text(request)])
 
-    def send_response(self, client: int, sequence: int, response: bytes) -> None:
+    def send_response(self, client: RemoteEnd, sequence: int, response: bytes) -> None:
         """Send the response to a request of a client."""
-        self._send(["response", client, sequence, _text(response)])
+        self._send(["response", client.key, sequence, _text(response)])
 
     def _send(self, change: list[Any]) -> None:
         if not self._is_cut:
@@ -131,11 +132,11 @@ class GraphLink:
                 owner = self._number(node)
                 present[owner] = ["node", owner, node.get_name(), node.get_namespace()]
                 for kind, end in _ends_of(node):
-                    is_topic = kind in ("publisher", "subscription")
+                    is_topic = kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION)
                     name = end.topic_name if is_topic else end.service_name
                     of = (end.msg_type if is_topic else end.srv_type).TYPE_NAME
                     number = self._number(end)
-                    present[number] = ["end", number, owner, kind, name, of, *_packed(end.qos_profile)]
+                    present[number] = ["end", number, owner, kind.value, name, of, *_packed(end.qos_profile)]
         gone = [number for number in self._locals if number not in present]
         new = [change for number, change in present.items() if number not in self._told]
         self._told = set(present)
@@ -155,23 +156,20 @@ class GraphLink:
     # --- what the other process has sent ---
 
     def _add_node(self, number: int, name: str, namespace: str) -> None:
-        self._nodes[number] = RemoteNode(name, namespace, self)
-        self._graph.add_node(self._nodes[number])
+        self._nodes[number] = RemoteNode(name, namespace, self, self._graph)
 
     def _add_end(self, number: int, owner: int, kind: str, name: str, type_name: str, *policies: int) -> None:
-        end = ENDS[kind](number, name, type_name, _unpacked(policies), self)
-        self._ends[number] = end
-        self._nodes[owner].ends.append(end)
-        getattr(self._graph, f"add_{kind}")(end)
+        node = self._owners[number] = self._nodes[owner]
+        node.add(Kind(kind), number, name, type_name, _unpacked(policies))
 
     def _remove(self, number: int) -> None:
-        if (end := self._ends.pop(number, None)) is not None:
-            kind = next(kind for kind, of in ENDS.items() if isinstance(end, of))
-            getattr(self._graph, f"remove_{kind}")(end)
-            for node in self._nodes.values():
-                node.ends = [one for one in node.ends if one is not end]
-        elif number in self._nodes:
-            self._graph.remove_node(self._nodes.pop(number))
+        if number in self._nodes:
+            node = self._nodes.pop(number)
+            for key in node.ends:
+                del self._owners[key]
+            node.leave()
+        elif number in self._owners:
+            self._owners.pop(number).remove(number)
 
     def _pass_message(self, subscription: int, data: str, stamp: int, count: int) -> None:
         if (end := self._locals.get(subscription)) is not None:  # it may have gone meanwhile
@@ -179,9 +177,10 @@ class GraphLink:
 
     def _pass_request(self, service: int, client: int, sequence: int, data: str) -> None:
         if (end := self._locals.get(service)) is not None:
-            caller = self._ends.get(client)
-            if caller is None:  # a client of a node that has just gone
-                caller = ENDS["client"](client, end.service_name, "", qos_profile_services_default, self)
+            if client in self._owners:
+                caller = self._owners[client].ends[client]
+            else:  # a client of a node that has just gone
+                caller = ENDS[Kind.CLIENT](client, end.service_name, "", qos_profile_services_default, self)
             end.receive(caller, sequence, _bytes(data))
 
     def _pass_response(self, client: int, sequence: int, data: str) -> None:
@@ -198,9 +197,9 @@ class GraphLink:
     }
 
 
-def _ends_of(node: GraphNode) -> Iterable[tuple[str, Any]]:
-    for kind in ENDS:
-        for end in getattr(node, f"all_{kind}s"):
+def _ends_of(node: GraphNode) -> Iterable[tuple[Kind, Any]]:
+    for kind in Kind:
+        for end in getattr(node, f"all_{kind.value}s"):
             yield kind, end
 
 

@@ -67,7 +67,7 @@ class MemoryServer:
 
     def connect(self, program: Program) -> None:
         """Connect a program."""
-        program.session = Session(program.graph, program, json_messages, lambda: None, program.reports.append)
+        program.session = Session(program.graph, json_messages, lambda: None, program.reports.append)
         self.programs.append(program)
         self.run()
 

@@ -12,9 +12,9 @@ __all__ = ["Transport"]
 class Transport(Protocol):
     """Shows the nodes of this process elsewhere, and adds nodes from there to the graph.
 
-    Remote nodes and endpoints are members of the graph like all others, with the transport as their `context`, so that
-    queries, matches and waits need to know nothing of it. A remote service gets requests by `ServiceEnd.receive`. The
-    transport passes messages to `SubscriptionEnd.receive`, and requests to `ServiceEnd.receive` with its own clients.
+    Remote nodes and endpoints (`remote_ends.py`) are members of the graph like all others, so that queries, matches and
+    waits need to know nothing of it. A remote service gets requests by `ServiceEnd.receive`. The transport passes
+    messages to `SubscriptionEnd.receive`, and requests to `ServiceEnd.receive` with its own clients.
     """
 
     @property

@@ -4,22 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any, NamedTuple
 
+from thymio_sim_ros.portable_ros.graph.remote_ends import Kind
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
 from thymio_sim_ros.portable_ros.rosbridge.operations import Operation, OperationError, field, qos_profile
 
-__all__ = ["Kind", "NodeDescription", "RemoteEndpoint", "read_graph"]
-
-
-class Kind(Enum):
-    """Kinds of endpoints, by the names of their lists."""
-
-    PUBLISHER = "publishers"
-    SUBSCRIPTION = "subscriptions"
-    SERVICE = "services"
-    CLIENT = "clients"
+__all__ = ["NodeDescription", "RemoteEndpoint", "read_graph"]
 
 
 class RemoteEndpoint(NamedTuple):
@@ -59,7 +50,8 @@ def _node(of: object) -> NodeDescription:
 
 def _endpoints(node: Operation) -> Iterator[RemoteEndpoint]:
     for kind in Kind:
-        for one in field(node, kind.value, list) if kind.value in node else ():
+        ends = f"{kind.value}s"
+        for one in field(node, ends, list) if ends in node else ():
             match one:
                 case [str(name), str(type_name)]:
                     yield RemoteEndpoint(kind, name, type_name)
@@ -69,6 +61,5 @@ def _endpoints(node: Operation) -> Iterator[RemoteEndpoint]:
                     yield found
                 case _:
                     raise OperationError(
-                        f"operation 'graph': found {kind.value} with {one!r:.60}, expected [name, type] or"
-                        " [name, type, qos]"
+                        f"operation 'graph': found {ends} with {one!r:.60}, expected [name, type] or [name, type, qos]"
                     )

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from thymio_sim_ros.portable_ros.graph.graph import Graph
 from thymio_sim_ros.portable_ros.graph.protocols import GraphNode
+from thymio_sim_ros.portable_ros.graph.remote_ends import Kind
 from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy
-from thymio_sim_ros.portable_ros.rosbridge.descriptions import Kind
 from thymio_sim_ros.portable_ros.rosbridge.operations import Operation, qos_of
 
 __all__ = ["Announcements", "LocalEndpoint"]

@@ -6,7 +6,8 @@ import itertools
 from collections.abc import Iterator
 from typing import Any
 
-from thymio_sim_ros.portable_ros.rosbridge.descriptions import Kind, NodeDescription, RemoteEndpoint
+from thymio_sim_ros.portable_ros.graph.remote_ends import Kind
+from thymio_sim_ros.portable_ros.rosbridge.descriptions import NodeDescription, RemoteEndpoint
 from thymio_sim_ros.portable_ros.rosbridge.operations import Operation
 
 __all__ = ["RosapiPoll"]

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from thymio_sim_ros.portable_ros.graph.protocols import ClientEnd
+from thymio_sim_ros.portable_ros.graph.remote_ends import RemoteEnd
 from thymio_sim_ros.portable_ros.rosbridge.local_endpoints import LocalEndpoint
 from thymio_sim_ros.portable_ros.rosbridge.operations import Operation, OperationError
 from thymio_sim_ros.portable_ros.rosbridge.payloads import Payloads
-from thymio_sim_ros.portable_ros.rosbridge.remote_graph import RemoteService
 
 __all__ = ["ServiceCalls"]
 
@@ -38,9 +38,9 @@ class ServiceCalls:
         self._pending: dict[str, _Pending] = {}
         self._numbers = itertools.count(1)
 
-    def call(self, service: RemoteService, client: ClientEnd, sequence: int, request: bytes) -> None:
+    def call(self, service: RemoteEnd, client: ClientEnd, sequence: int, request: bytes) -> None:
         """Send the request of a client of this process."""
-        type_name = service.srv_type.TYPE_NAME
+        type_name = service.type_name
         call_id = f"call{next(self._numbers)}"
         if len(self._pending) >= _MOST_CALLS:
             self._pending.pop(next(iter(self._pending)), None)

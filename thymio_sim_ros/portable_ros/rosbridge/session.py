@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 from thymio_sim_ros.portable_ros.graph.graph import Graph
 from thymio_sim_ros.portable_ros.graph.protocols import PublisherEnd, Sample
-from thymio_sim_ros.portable_ros.rosbridge.descriptions import Kind, NodeDescription, read_graph
+from thymio_sim_ros.portable_ros.graph.remote_ends import Kind
+from thymio_sim_ros.portable_ros.rosbridge.descriptions import NodeDescription, read_graph
 from thymio_sim_ros.portable_ros.rosbridge.local_endpoints import Announcements, LocalEndpoint
 from thymio_sim_ros.portable_ros.rosbridge.operations import Operation, OperationError, decode, encode, field
 from thymio_sim_ros.portable_ros.rosbridge.outbox import Outbox
@@ -52,14 +53,13 @@ class Session:
     def __init__(
         self,
         graph: Graph,
-        context: object,
         codec: JsonCodec,
         wake: Callable[[], None],
         report: Callable[[str], None],
     ) -> None:
-        """`context`: that of remote endpoints; `wake` has `frames` called soon; `report` gets lines for the user."""
+        """`wake` has `frames` called soon; `report` gets lines for the user."""
         self._graph, self._wake, self._report = graph, wake, report
-        self._remote = RemoteGraph(graph, context, lambda *call: self._calls.call(*call))
+        self._remote = RemoteGraph(graph, lambda *call: self._calls.call(*call))
         self._outbox: Outbox[_Publication | Operation] = Outbox()
         self._greetings: deque[Operation] = deque([{"op": _GRAPH, "id": _GRAPH}])
         self._payloads = Payloads(codec)

@@ -126,7 +126,7 @@ class RosbridgeTransport:
             ping_timeout=_PONG_S,
             close_timeout=_CLOSE_S,
         ) as connection:
-            session = self._session = Session(self._graph, self, self._codec, self.wake, self._report)
+            session = self._session = Session(self._graph, self._codec, self.wake, self._report)
             self.wake()
             tasks = [asyncio.create_task(part(connection, session)) for part in (self._read, self._write, self._poll)]
             try:
