@@ -89,6 +89,20 @@ def test_kernels_that_python_runs_give_the_same_bits(
     assert 0 < sum(count > 0 for count in counts) < len(counts)
 
 
+def test_kernels_that_python_runs_push_with_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = make([FLOOR, box(0.14, 0.02, 0.05, 0.05) | {"mass_kg": 0.3}], [{"name": "robot_0", "x_m": 0.0, "y_m": 0.0}])
+
+    def push() -> list[StepResult]:
+        world = World(scene)
+        world.post("robot_0", MotorTargets(400, 300))
+        return [world.step() for _ in range(80)]
+
+    compiled = push()
+    monkeypatch.setattr("thymio_sim_ros.sim.kernel.memory.is_usable", lambda: False)
+    assert push() == compiled
+    assert any(step.contacts for step in compiled)
+
+
 def test_objects_that_are_pushed_moved_opened_or_gone_are_seen_where_they_are() -> None:
     door = {
         "kind": "door", "name": "gate", "closed_x_m": 0.14, "closed_y_m": -1.0, "opened_x_m": 0.14, "opened_y_m": -1.6,
