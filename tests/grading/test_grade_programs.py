@@ -109,14 +109,16 @@ def test_every_level_gives_the_same_marks(tmp_path: Path, name: str) -> None:
     }
 
 
-def test_a_class_of_nodes_gets_its_points(tmp_path: Path) -> None:
-    assert points(graded_class(tmp_path)) == EXPECTED
+def test_a_class_of_nodes_gets_its_points(tmp_path: Path, level: str) -> None:
+    assert points(graded_class(tmp_path, level)) == EXPECTED
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(import_hook.is_served("rclpy"), reason="needs an installed ROS 2")
-def test_a_class_gets_the_same_marks_each_time_and_on_both_graphs(tmp_path: Path) -> None:
-    tables = [(graded_class(tmp_path / name, *options) / "marks.csv").read_bytes() for name, options in RUNS.items()]
+def test_a_class_gets_the_same_marks_each_time_and_on_both_graphs(tmp_path: Path, level: str) -> None:
+    tables = [
+        (graded_class(tmp_path / name, level, *options) / "marks.csv").read_bytes() for name, options in RUNS.items()
+    ]
     assert tables == [tables[0]] * len(RUNS)
 
 
@@ -124,7 +126,7 @@ EXPECTED = {name: str(points) for name, (_, points) in ros_class.CLASS.items()}
 RUNS = {"first": (), "second": (), "installed": ("--ros",)}
 
 
-def graded_class(folder: Path, *options: str) -> Path:
+def graded_class(folder: Path, level: str, *options: str) -> Path:
     """Grade the class of nodes; return the folder of the reports."""
     for name, (text, _) in ros_class.CLASS.items():
         (folder / "class" / name).mkdir(parents=True)
@@ -132,5 +134,5 @@ def graded_class(folder: Path, *options: str) -> Path:
     (folder / "assignment.toml").write_text(ros_class.ASSIGNMENT)
     (folder / "test_node.py").write_text(ros_class.TEST)
     words = ["grade", folder / "class", "--assignment", folder / "assignment.toml", "-o", folder / "grades"]
-    assert main.main([*map(str, words), "--workers", "2", "--isolation", "limits", *options]) == 0
+    assert main.main([*map(str, words), "--workers", "2", "--isolation", level, *options]) == 0
     return folder / "grades"
