@@ -19,11 +19,13 @@ class CodeMemory:
     changes the flag of an `overlapped` word, which another instruction may read as its operand, calls `refresh`.
     """
 
-    __slots__ = ("_words", "addresses", "edges", "operations", "overlapped")
+    __slots__ = ("_branches", "_words", "addresses", "edges", "operations", "overlapped")
 
     def __init__(self, size: int) -> None:
         """Create a memory of zeros."""
         self._words = [0] * size
+        self._branches: list[int] = []
+        """Places of the words that are a BRANCH."""
         self.addresses: dict[int, int] = {}
         """Address of the code of each event."""
         self.edges: MutableSequence[int] = [0] * size
@@ -42,21 +44,17 @@ class CodeMemory:
     @property
     def words(self) -> tuple[int, ...]:
         """All words, unsigned, with their edge flags."""
-        return tuple(
-            (word & ~WAS_TRUE) | edge << _FLAG if word >> 12 == _BRANCH else word
-            for word, edge in zip(self._words, self.edges, strict=True)
-        )
+        return tuple(self._with_edges())
 
     def write(self, start: int, words: Sequence[int]) -> None:
         """Write words, which must fit, and decode them."""
         end = start + len(words)
         self._words[start:end] = [word & 0xFFFF for word in words]
         self.edges[start:end] = [word >> _FLAG & 1 for word in self._words[start:end]]
-        self.overlapped = {
-            pc for pc, word in enumerate(self._words) if word >> 12 == _BRANCH and self._is_overlapped(pc)
-        }
-        for pc in range(max(start - 2, 0), end):
-            self._decode(pc)
+        self._branches = [pc for pc, word in enumerate(self._words) if word >> 12 == _BRANCH]
+        self.overlapped = {pc for pc in self._branches if self._is_overlapped(pc)}
+        first, flagged = max(start - 2, 0), [*self._with_edges(), 0]
+        self.operations[first:end] = map(decode, flagged[first:end], flagged[first + 1 : end + 1])
         self._find_events()
 
     def refresh(self, pc: int) -> None:
@@ -72,6 +70,8 @@ class CodeMemory:
         Source: docs/spec/aseba-bytecode-vm.md section 10.4.
         """
         words, edges = self._words, self.edges
+        if not any(edges[pc] for pc in self._branches):
+            return
         pc = 2 * self.word(0) + 1
         while pc < len(words):
             kind = words[pc] >> 12
@@ -80,6 +80,12 @@ class CodeMemory:
                 if pc in self.overlapped:
                     self.refresh(pc)
             pc += LENGTH[kind]
+
+    def _with_edges(self) -> list[int]:
+        words = self._words.copy()
+        for pc in self._branches:
+            words[pc] = (words[pc] & ~WAS_TRUE) | self.edges[pc] << _FLAG
+        return words
 
     def _find_events(self) -> None:
         """Read the table of events."""

@@ -6,6 +6,7 @@ Source: docs/spec/aseba-bytecode-vm.md sections 1 and 10.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 from aseba_vm.bytecode import EDGE, Op, signed, signed12
@@ -60,6 +61,7 @@ UNARY_FUNCTIONS: Sequence[Callable[[int], int]] = (
 )
 
 
+@lru_cache(1 << 14)
 def decode(word: int, second: int) -> Decoded:
     """Kind and operands of the operation that starts with `word`, given the word after it."""
     op, operand = word >> 12, word & 0xFFF
