@@ -12,11 +12,12 @@ import pytest
 from aseba_vm.jit.tiering import INTERPRETER
 from tests.aseba_vm.engines import TRANSLATORS
 from tests.tracks import farthest_in_laps
+from thymio_sim_ros.device.costs import PROGRAM_START
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.firmware.settings import SettingsError
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.device.programs.program import load_program
-from thymio_sim_ros.engine.devices import BUDGET, MAX_ROUNDS
+from thymio_sim_ros.engine.devices import BUDGET, TICK_BUDGET
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.engine.inputs import DevicesAdded, DeviceStart
 from thymio_sim_ros.files.loading import load_playground, read_program
@@ -375,6 +376,10 @@ def test_a_robot_follows_the_line_that_another_one_draws():
     assert follower.pose.y_m > -0.3
 
 
+LONGEST_CALL = 2 * 0x10000 + BUDGET
+"""Instructions that a robot may execute beyond its share: a deque is moved around its ring."""
+
+
 def runaway(path, translator, card):
     options = DeviceOptions(card=card, settings=card.with_name(f"{card.name}-settings"))
     engine = Engine(playgrounds.loads(TWO, "two"), load_program(path.read_text(), path.name), options=options)
@@ -382,9 +387,8 @@ def runaway(path, translator, card):
     for device in engine.devices.values():
         device._vm.use_engine(translator)
     for _ in range(4):
-        before = [device._vm.instructions for device in engine.devices.values()]
         engine.step()
-        spent = [device._vm.instructions - each for device, each in zip(engine.devices.values(), before, strict=True)]
+        spent = [device._vm.instructions for device in engine.devices.values()]
         reported.append((spent, [device.variables.words() for device in engine.devices.values()], list(engine.emitted)))
     return reported
 
@@ -392,10 +396,47 @@ def runaway(path, translator, card):
 @pytest.mark.parametrize("path", RUNAWAYS, ids=lambda path: path.stem)
 def test_a_program_without_an_end_gets_its_budget_whatever_runs_it(path, tmp_path):
     wanted = runaway(path, INTERPRETER, tmp_path / INTERPRETER)
-    longest_call = 2 * 0x10000 + 5000
-    assert all(0 < sum(spent) <= len(spent) * (MAX_ROUNDS * BUDGET + longest_call) for spent, _, _ in wanted[:1])
+    for tick, (spent, _, _) in enumerate(wanted, start=2):  # devices also run before the first tick
+        assert 0 < sum(spent) <= tick * TICK_BUDGET + len(spent) * LONGEST_CALL
     for translator in TRANSLATORS:
         assert runaway(path, translator, tmp_path / translator) == wanted
+
+
+def test_a_robot_whose_calls_are_longer_than_its_share_pays_for_them_and_no_other_robot_waits():
+    deques, counter = read_runaway("deques"), load_program("var n\nonevent motor\nn++", "counter")
+    engine = Engine(playgrounds.loads(TWO, "two"), {"anna": deques, "bert": counter})
+    engine.run(2)
+    assert 0 < engine.devices["anna"]._vm.instructions <= 201 * TICK_BUDGET + LONGEST_CALL
+    assert engine.devices["bert"].variables.get("n") == (200,)
+
+
+def test_a_new_program_does_not_pay_for_the_calls_of_the_one_before_it():
+    counter = load_program("var n = 1", "counter")
+    engine = Engine(playgrounds.loads(TWO, "two"), {"anna": read_runaway("deques")})
+    engine.load("anna", counter)
+    engine.step()
+    assert engine.devices["anna"].variables.get("n") == (1,)
+
+
+@pytest.mark.parametrize("name", ["menu", "reboot"])
+def test_a_robot_that_starts_its_program_all_the_time_pays_for_each_start(name):
+    engine = Engine(playgrounds.loads(TWO, "two"), read_runaway(name))
+    resets = 0
+
+    def count_reset(vm: object) -> None:
+        nonlocal resets
+        resets += 1
+
+    for device in engine.devices.values():
+        reset = device._vm._on_reset
+        device._vm._on_reset = lambda vm, reset=reset: (count_reset(vm), reset(vm))
+    engine.run(1)
+    assert 20 < resets <= 101 * TICK_BUDGET / PROGRAM_START + 2
+
+
+def read_runaway(name):
+    path = RUNAWAYS[0].with_name(f"{name}.aesl")
+    return load_program(path.read_text(), path.name)
 
 
 def test_devices_that_cannot_be_created_leave_the_options_as_they_were(tmp_path: Path) -> None:

@@ -83,6 +83,8 @@ class BehaviorHost:
         self._notices: list[str] = []
         self.breakpoints: tuple[int, ...] = ()
         """The lines at which the user asked that the user program pauses, from 1."""
+        self.own_starts = 0
+        """How often the robot has started a program by itself."""
         self._loaded: list[ThymioProgram] = []
         """The programs that were loaded with their text, the last one at the end."""
 
@@ -165,7 +167,7 @@ class BehaviorHost:
     def _handle_request(self, event: EmittedEvent) -> None:
         try:
             if event.name == _BACK:
-                self._run(built_in(MENU, self.device.layout), warm=True)
+                self._start_by_itself(built_in(MENU, self.device.layout), warm=True)
             elif event.name == _START and event.args:
                 self._start_entry(event.args[0])
         except ProgramError as error:
@@ -180,7 +182,11 @@ class BehaviorHost:
             self._notices.append(f"{_START} {entry}: the robot has no such program")
             return
         self._entry = entry
-        self._run(program, warm=entry != PROGRAM_ENTRY)
+        self._start_by_itself(program, warm=entry != PROGRAM_ENTRY)
+
+    def _start_by_itself(self, program: ThymioProgram, *, warm: bool) -> None:
+        self.own_starts += 1
+        self._run(program, warm=warm)
 
     def _begin(self) -> None:
         if isinstance(self._first, str):

@@ -10,10 +10,13 @@ from __future__ import annotations
 from aseba_vm.machine.costs import Cost, Costs
 from aseba_vm.machine.natives import NATIVES
 
-__all__ = ["BYTES_PER_INSTRUCTION", "COSTS"]
+__all__ = ["BYTES_PER_INSTRUCTION", "COSTS", "PROGRAM_START"]
 
 BYTES_PER_INSTRUCTION = 100
 """Bytes of a sound that can be read from the card, or written to it, in the time of one instruction."""
+
+PROGRAM_START = 3000
+"""Instructions in the time of which a robot starts again, also with another program of its menu."""
 
 _CALL = Cost(16)
 """A call from the machine into Python."""
@@ -27,7 +30,7 @@ COSTS = Costs(
         **dict.fromkeys(NATIVES, _VECTOR),
         **dict.fromkeys(("math.atan2", "math.sin", "math.cos"), Cost(12, 3)),
         **dict.fromkeys(("deque.size", "sd.seek", "_system.settings.read", "_rf.nodeid", "_rf.setup"), _CALL),
-        **dict.fromkeys(("_system.reboot", "_poweroff"), _CALL),
+        **dict.fromkeys(("_system.reboot", "_poweroff"), Cost(PROGRAM_START)),
         "_system.settings.write": Cost(60),
         "_system.settings.flash": Cost(3000),
         "sound.record": Cost(2000),

@@ -173,6 +173,10 @@ class RobotHost(Protocol):
     def breakpoints(self) -> Sequence[int]:
         """The lines at which the user asked that the user program pauses, from 1."""
 
+    @property
+    def own_starts(self) -> int:
+        """How often the robot has started a program by itself, as the menu does."""
+
     def load(self, program: ThymioProgram) -> None:
         """Load a user program and start it."""
 

@@ -160,6 +160,8 @@ class RemoteHost:
         """Name of the built-in program that was started last; "" after another program."""
         self.breakpoints: tuple[int, ...] = ()
         """The lines at which the user asked that the user program pauses, from 1."""
+        self.own_starts = 0
+        """See `RobotHost`."""
 
     @property
     def user_program(self) -> ThymioProgram:
