@@ -3,28 +3,16 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 from tests.patience import PATIENCE_S
-from thymio_sim_ros.portable_ros.rclpy.context import Context
 from thymio_sim_ros.portable_ros.rclpy.exceptions import ROSInterruptException
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor, TimeoutException
 from thymio_sim_ros.portable_ros.rclpy.experimental.events_executor import EventsExecutor
 from thymio_sim_ros.portable_ros.rclpy.node import Node
 from thymio_sim_ros.portable_ros.rclpy.task import Future
-
-
-@pytest.fixture
-def node() -> Iterator[Node]:
-    context = Context()
-    context.init([])
-    made = Node("rounds", context=context, enable_rosout=False, start_parameter_services=False)
-    yield made
-    made.destroy_node()
-    context.try_shutdown()
 
 
 def round_of(executor: SingleThreadedExecutor) -> list[Any]:

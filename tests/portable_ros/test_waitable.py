@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from thymio_sim_ros.portable_ros.rclpy.context import Context
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor
 from thymio_sim_ros.portable_ros.rclpy.node import Node
 from thymio_sim_ros.portable_ros.rclpy.task import Future
 from thymio_sim_ros.portable_ros.rclpy.waitable import EntitySet, NumberOfEntities, Waitable
-
-
-@pytest.fixture
-def node() -> Iterator[Node]:
-    context = Context()
-    context.init([])
-    made = Node("waiting", context=context, enable_rosout=False, start_parameter_services=False)
-    yield made
-    made.destroy_node()
-    context.shutdown()
 
 
 class Doorbell(Waitable):

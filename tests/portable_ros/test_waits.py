@@ -9,7 +9,6 @@ import pytest
 from thymio_sim_ros.portable_ros.graph import waits
 from thymio_sim_ros.portable_ros.messages.message_class import service_type
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import ReentrantCallbackGroup
-from thymio_sim_ros.portable_ros.rclpy.context import Context
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration
 from thymio_sim_ros.portable_ros.rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from thymio_sim_ros.portable_ros.rclpy.node import Node
@@ -42,16 +41,6 @@ def watcher() -> Iterator[Refusing]:
     before = waits.watch(made)
     yield made
     waits.watch(before)
-
-
-@pytest.fixture
-def node() -> Iterator[Node]:
-    context = Context()
-    context.init([])
-    made = Node("waiting", context=context, enable_rosout=False, start_parameter_services=False)
-    yield made
-    made.destroy_node()
-    context.try_shutdown()
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from thymio_sim_ros.portable_ros import import_hook
 import_hook.install(is_forced=True)
 
 from thymio_sim_ros.classroom.suite_process import PLAYGROUND_VARIABLE
-from thymio_sim_ros.cli import main, suite  # noqa: F401
+from thymio_sim_ros.cli import main, suite  # noqa: F401 - imported for the processes that are forked
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.ros.combined import run_ticks
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError

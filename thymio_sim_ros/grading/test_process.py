@@ -245,7 +245,7 @@ def _import_for(items: Sequence[pytest.Item]) -> str:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)  # lark, imported with the first node's messages
             try:
-                import thymio_sim_ros.testing.ros  # noqa: F401
+                import thymio_sim_ros.testing.ros  # noqa: F401 - imported before the submission
             except ImportError as error:
                 return f"ROS cannot be imported: {error}"
     return ""
