@@ -64,14 +64,14 @@ RULES = {
     f"{OURS}.engine": Rule(_names("aseba_vm", "device", "engine", "sim"), never=NO_WALL_CLOCK),
     f"{OURS}.files": Rule(_names("aseba_vm", "device", "files", "sim")),
     f"{OURS}.names": Rule(_names("bridge.access", "names")),
-    f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"foxglove_websocket", "websockets"})),
+    f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"aiohttp", "foxglove_websocket", "websockets"})),
     f"{OURS}.bridge.rosbridge": Rule(_names("bridge"), frozenset({"cbor2"}), NO_WALL_CLOCK),
     f"{OURS}.web": Rule(
         _names("web", "bridge", "files.playground_index", "files.resources", "sim"), frozenset({"aiohttp"})
     ),
     f"{OURS}.network": Rule(
-        _names("aseba_vm", "bridge", "device.programs", "names.addresses", "network"),
-        frozenset({"serial", "websockets", "zeroconf"}),
+        _names("aseba_vm", "bridge", "device.programs", "names.addresses", "network", "web"),
+        frozenset({"aiohttp", "serial", "zeroconf"}),
     ),
     f"{OURS}.network.http": Rule(
         _names(

@@ -6,6 +6,7 @@ import asyncio
 import base64
 import os
 import socket
+import ssl
 from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
@@ -16,13 +17,15 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Origin, Subprotocol
 
 from tests.patience import PATIENCE_S, PROGRAM_S
-from thymio_sim_ros.bridge import SUBPROTOCOLS, Capability, ServerInfo, ServerSettings
+from thymio_sim_ros.bridge import SUBPROTOCOLS, BridgeServer, Capability, ServerInfo, ServerSettings
+from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
-from thymio_sim_ros.bridge.server import BridgeServer
-from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
+from thymio_sim_ros.bridge.websocket import BridgeSockets
+from thymio_sim_ros.web.application import Application
+from thymio_sim_ros.web.http_connections import HttpConnections
 
 T = TypeVar("T")
 
@@ -67,6 +70,23 @@ class Sink:
                 await self._arrived.wait()
 
 
+class LoopIterations:
+    """Counts iterations of the running event loop."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._task = asyncio.create_task(self._run())
+
+    async def _run(self) -> None:
+        while True:
+            await asyncio.sleep(0)
+            self.count += 1
+
+    def stop(self) -> None:
+        """Stop counting."""
+        self._task.cancel()
+
+
 class Client:
     """A real client, which sends and receives messages."""
 
@@ -101,10 +121,14 @@ class Client:
 class Bridge:
     """A running server with one channel."""
 
-    def __init__(self, server: BridgeServer, sink: Sink, port: int) -> None:
+    def __init__(
+        self, server: BridgeServer, sink: Sink, port: int, connections: HttpConnections, sockets: BridgeSockets
+    ) -> None:
         self.server = server
+        self.close = sockets.close
         self.sink = sink
         self.port = port
+        self.slots = connections.slots
 
     @property
     def url(self) -> str:
@@ -136,6 +160,12 @@ class Bridge:
         for time_ns, payload in enumerate(payloads):
             self.server.publish(CHANNEL.id, time_ns, payload)
 
+    async def flood(self, count: int, payload: Callable[[int], bytes]) -> None:
+        """Publish many messages, and let the loop process each before the next one."""
+        for number in range(count):
+            self.publish(payload(number))
+            await asyncio.sleep(0)
+
     async def until(self, condition: Callable[[], bool]) -> None:
         """Run the event loop until the condition is true."""
         async with asyncio.timeout(PATIENCE_S):
@@ -144,19 +174,30 @@ class Bridge:
 
 
 @asynccontextmanager
-async def bridge(settings: ServerSettings | None = None) -> AsyncIterator[Bridge]:
-    """A server that ends with the block. Neither it nor its clients ping: the time of a pong depends on the machine."""
+async def bridge(
+    settings: ServerSettings | None = None, *, max_connections: int = 256, tls: ssl.SSLContext | None = None
+) -> AsyncIterator[Bridge]:
+    """A server that ends with the block. It does not ping its clients: the time of a pong depends on the machine."""
     sink = Sink()
     board = Switchboard(ServerInfo("test", tuple(Capability), ("cdr", "json")))
-    server = BridgeServer(board, sink, replace(settings or ServerSettings(), ping_interval_s=PROGRAM_S))
+    loop = asyncio.get_running_loop()
+    server = BridgeServer(board, sink, loop, replace(settings or ServerSettings(), heartbeat_s=PROGRAM_S))
     sink.answer = server.execute
+    application = Application()
+    sockets = BridgeSockets(server)
+    application.websockets["/"] = sockets.handle
+    problems: list[str] = []
+    connections = HttpConnections(application.answer, max_connections, lambda about, text: problems.append(text), loop)
     (listener,) = listen("127.0.0.1", 0)
-    await server.start([listener])
+    connections.accept([listener], tls)
     server.execute(ev.AddChannels((CHANNEL,)))
     try:
-        yield Bridge(server, sink, listener.getsockname()[1])
+        yield Bridge(server, sink, listener.getsockname()[1], connections, sockets)
     finally:
-        await server.close()
+        await sockets.close()
+        await connections.close()
+        listener.close()
+    assert [text for text in problems if "internal error" in text] == []
 
 
 def masked_frame(message: ms.ClientMessage) -> bytes:

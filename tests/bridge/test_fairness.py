@@ -11,7 +11,7 @@ from contextlib import asynccontextmanager, suppress
 import pytest
 from websockets.exceptions import ConnectionClosedError
 
-from tests.bridge.peers import Client, StalledClient, bridge, masked_frame, run
+from tests.bridge.peers import Client, LoopIterations, StalledClient, bridge, masked_frame, run
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import ServerSettings
 from thymio_sim_ros.bridge.protocol import messages as ms
@@ -37,23 +37,6 @@ async def flooder(port: int) -> AsyncIterator[StalledClient]:
         client.abort()
 
 
-class LoopIterations:
-    """Counts iterations of the event loop."""
-
-    def __init__(self) -> None:
-        self.count = 0
-        self._task = asyncio.create_task(self._run())
-
-    async def _run(self) -> None:
-        while True:
-            await asyncio.sleep(0)
-            self.count += 1
-
-    def stop(self) -> None:
-        """Stop counting."""
-        self._task.cancel()
-
-
 class SlowClock:
     """Every message costs a millisecond of processor time, and comes a second after the one before."""
 
@@ -76,7 +59,7 @@ def test_a_client_with_few_messages_does_not_wait_for_throttled_clients(monkeypa
         async with bridge() as server, server.client() as client:
             await client.settle()
             monkeypatch.setattr("thymio_sim_ros.bridge.throttle.time", SlowClock())
-            async with server.server._throttle._turns.take(0.0):
+            async with server.server.throttle._turns.take(0.0):
                 for _ in range(20):
                     await client.settle()
 
@@ -184,12 +167,12 @@ def test_more_clients_than_the_limit_are_rejected_until_one_disconnects() -> Non
 @pytest.mark.parametrize("begin", [b"", b"GET / HTTP/1.1\r\nHost: localhost\r\n"])
 def test_connections_without_a_handshake_make_room_for_clients(begin: bytes) -> None:
     async def scenario() -> None:
-        async with bridge(ServerSettings(max_clients=2)) as server, server.client() as first:
+        async with bridge(max_connections=4) as server, server.client() as first:
             silent = []
-            for _ in range(20):
+            for _ in range(6):
                 silent.append(socket.create_connection(("127.0.0.1", server.port)))
                 silent[-1].sendall(begin)
-            await server.until(lambda: server.server._connections.connections.is_full)
+            await server.until(lambda: server.slots.is_full)
             async with server.client() as second:
                 await first.settle()
                 await second.settle()
@@ -201,7 +184,7 @@ def test_connections_without_a_handshake_make_room_for_clients(begin: bytes) -> 
 
 def test_silent_connections_are_limited_and_free_their_slots_when_they_close() -> None:
     async def scenario() -> None:
-        async with bridge(ServerSettings(max_clients=2)) as server:
+        async with bridge(max_connections=4) as server:
             loop = asyncio.get_running_loop()
             silent = [socket.create_connection(("127.0.0.1", server.port)) for _ in range(5)]
             for one in silent:
@@ -211,7 +194,7 @@ def test_silent_connections_are_limited_and_free_their_slots_when_they_close() -
                     assert await loop.sock_recv(silent[0], 1) == b""
             for one in silent:
                 one.close()
-            await server.until(lambda: not server.server._connections.connections)
+            await server.until(lambda: not server.slots)
             async with server.client() as client:
                 await client.settle()
 

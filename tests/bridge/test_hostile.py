@@ -10,16 +10,18 @@ from collections import Counter
 from collections.abc import Iterator
 
 import pytest
+from aiohttp.web import WebSocketResponse
 
 from tests.bridge.peers import CHANNEL, Bridge, Client, StalledClient, bridge, run
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import ServerSettings
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue
+from thymio_sim_ros.bridge.client_socket import ClientSocket
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.client_state import ClientState
-from thymio_sim_ros.bridge.transport import SharedConnection, SharedTransport
+from thymio_sim_ros.web.http_connections import _Connection
 
 pytestmark = pytest.mark.process
 
@@ -115,14 +117,8 @@ async def visit(server: Bridge, number: int) -> None:
 def census() -> Counter[type]:
     """Number of existing objects of each type that belongs to a connection."""
     gc.collect()
-    kinds = (ClientState, ClientSendQueue, SharedConnection, SharedTransport, asyncio.Task, socket.socket)
+    kinds = (ClientState, ClientSendQueue, ClientSocket, WebSocketResponse, _Connection, asyncio.Task, socket.socket)
     return Counter(type(thing) for thing in gc.get_objects() if type(thing) in kinds)
-
-
-def server_connections(port: int) -> list[SharedConnection]:
-    """Connections of the server on this port; those of earlier tests may not have been collected yet."""
-    living = [thing for thing in gc.get_objects() if type(thing) is SharedConnection]
-    return [connection for connection in living if connection.local_address[1] == port]
 
 
 def test_a_stalled_client_costs_its_limit_and_one_message() -> None:
@@ -134,10 +130,12 @@ def test_a_stalled_client_costs_its_limit_and_one_message() -> None:
             await stalled.connect()
             await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
             await server.sink.until(lambda events: len(events) == 1)
-            (connection,) = server_connections(server.port)
+            (queue,) = server.server._queues.values()
             for _ in range(5000):  # 20 MB
                 server.publish(message)
-                assert connection.transport.get_write_buffer_size() <= limit + 2 * len(message)
+                await asyncio.sleep(0)
+                assert queue.size <= limit + 2 * len(message)
+            assert queue.size > limit
             stalled.abort()
 
     run(scenario())

@@ -53,7 +53,7 @@ def test_a_client_connects_with_either_version_of_tls(tmp_path: Path, version: s
     trust.minimum_version = trust.maximum_version = version
 
     async def scenario() -> ms.ServerInfo:
-        async with bridge(ServerSettings(tls=tls)) as server:
+        async with bridge(tls=tls) as server:
             address = f"wss://localhost:{server.port}"
             async with connect(address, subprotocols=SUBPROTOCOLS, ssl=trust) as connection:
                 return await Client(connection).next(ms.ServerInfo)
@@ -247,8 +247,7 @@ def test_a_stalled_client_keeps_its_control_messages_and_gets_the_newest_data() 
             await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
             await server.sink.until(lambda events: len(events) == 1)
             last = 20_000
-            for number in range(last + 1):
-                server.publish(number.to_bytes(4, "little") + KILOBYTE)
+            await server.flood(last + 1, lambda number: number.to_bytes(4, "little") + KILOBYTE)
             await stalled.say(ms.GetParameters((), "still answered"))
             numbers: list[int] = []
             while not numbers or numbers[-1] != last:
@@ -269,8 +268,7 @@ def test_a_slow_client_receives_one_warning() -> None:
             await stalled.connect()
             await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
             await server.sink.until(lambda events: len(events) == 1)
-            for _ in range(20_000):
-                server.publish(KILOBYTE)
+            await server.flood(20_000, lambda number: KILOBYTE)
             await stalled.say(ms.FetchAsset("end", 1))
             await server.sink.until(lambda events: len(events) == 2)
             server.server.execute(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "end")))
@@ -329,7 +327,7 @@ def test_a_client_that_waits_for_the_event_sink_does_not_delay_closing() -> None
             await busy.send(*[ms.ClientMessageData(1, b"data")] * 100)
             await server.sink.until(lambda events: len(events) == 2)
             async with asyncio.timeout(PATIENCE_S):
-                await server.server.close()
+                await server.close()
             assert server.server.client_count == 0
 
     run(scenario())
@@ -342,10 +340,9 @@ def test_a_stalled_client_does_not_delay_closing() -> None:
             await stalled.connect()
             await stalled.say(ms.Subscribe((ms.Subscription(1, CHANNEL.id),)))
             await server.sink.until(lambda events: len(events) == 1)
-            for _ in range(20_000):
-                server.publish(KILOBYTE)
+            await server.flood(20_000, lambda number: KILOBYTE)
             async with asyncio.timeout(PATIENCE_S):
-                await server.server.close()
+                await server.close()
             assert server.server.client_count == 0
             stalled.abort()
 

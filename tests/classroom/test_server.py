@@ -15,7 +15,7 @@ from tests.classroom.test_requests import OPTIONS
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import access
 from thymio_sim_ros.bridge.connections import MIN_WAIT_S, Phase
-from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.classroom import server
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.folder import ClassFolder

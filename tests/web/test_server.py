@@ -14,7 +14,7 @@ import pytest
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import connections as places
 from thymio_sim_ros.bridge.connections import Phase
-from thymio_sim_ros.web import Content, PageThread, Settings
+from thymio_sim_ros.web import Content, ServerThread, Settings
 
 pytestmark = pytest.mark.process
 
@@ -38,16 +38,11 @@ def warnings():
 def serve(folder, warnings):
     with contextlib.ExitStack() as stack:
 
-        def start(address="localhost", **settings):
-            server = PageThread(
-                Content(folder, b'{"foxglove_port": 1234}'),
-                Settings(1234, **settings),
-                address=address,
-                port=0,
-                warn=warnings.append,
-            )
+        def start(address="localhost", max_connections=768, **settings):
+            server = ServerThread(warn=warnings.append, connections=max_connections)
             stack.callback(server.close)
-            return server.port
+            server.mount_page(Content(folder, b'{"foxglove_port": 1234}'), Settings(1234, **settings))
+            return server.listen(address, 0)[1]
 
         yield start
 
@@ -264,19 +259,27 @@ def test_a_class_that_opens_the_page_at_the_same_time_is_served(serve):
 
 def test_closing_ends_the_thread_and_frees_the_port(folder):
     before = threading.active_count()
-    server = PageThread(Content(folder, b"{}"), Settings(1), address="localhost", port=0, warn=print)
-    assert ask(server.port)[0].status == 200
-    with socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE_S) as held:
+    server, port = page_server(folder)
+    assert ask(port)[0].status == 200
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as held:
         server.close()
         server.close()
-        assert held.recv(1) == b""
+        with contextlib.suppress(ConnectionResetError):  # it was not accepted yet
+            assert held.recv(1) == b""
     assert threading.active_count() <= before
-    again = PageThread(Content(folder, b"{}"), Settings(1), address="localhost", port=server.port, warn=print)
+    again, _ = page_server(folder, port)
     again.close()
 
 
 def test_closing_before_the_server_has_started_leaves_nothing_behind(folder):
-    server = PageThread(Content(folder, b"{}"), Settings(1), address="localhost", port=0, warn=print)
+    server, port = page_server(folder)
     server.close()
     with pytest.raises(ConnectionRefusedError):
-        socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE_S)
+        socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S)
+
+
+def page_server(folder, port=0):
+    """A server and its port."""
+    server = ServerThread(warn=print)
+    server.mount_page(Content(folder, b"{}"), Settings(1))
+    return server, server.listen("localhost", port)[1]

@@ -4,10 +4,11 @@
     rosbridge/                     a second protocol: operations and their encoding
     switchboard/                   clients, channels and subscriptions: all state and decisions, without sockets;
                                    events to the data source and commands from it
-    server, server_thread          sockets and their event loop; settings has their limits
+    server                         clients around the switchboard, without sockets; settings has their limits
+    websocket                      one client on a WebSocket of aiohttp; client_send_queue: messages for it
     handshake                      who may connect, by access (tokens) and origin_policy (web pages)
-    transport, framing             writing to a client from any thread
-    client_send_queue, fair_lock   messages for slow clients; the lock that guards the state
+    connections, throttle          limits of connections, and of the time of busy clients
+    listening                      listening sockets of all servers
 
 docs/spec/foxglove.md section 1 explains why this is not one of the vendor's packages.
 """
@@ -18,18 +19,18 @@ from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS, Capability, Role
 from thymio_sim_ros.bridge.protocol.errors import BridgeError, FrameError
 from thymio_sim_ros.bridge.protocol.messages import ServerInfo
-from thymio_sim_ros.bridge.server_thread import ServerThread
+from thymio_sim_ros.bridge.server import BridgeServer
 from thymio_sim_ros.bridge.settings import EventSink, ServerSettings
 
 __all__ = [
     "SUBPROTOCOLS",
     "BridgeError",
+    "BridgeServer",
     "Capability",
     "EventSink",
     "FrameError",
     "Role",
     "ServerInfo",
     "ServerSettings",
-    "ServerThread",
     "Tokens",
 ]

@@ -1,114 +1,95 @@
-"""The send queue of one client: never blocks, keeps the order, and limits the memory that a slow client can use.
+"""The messages that wait for one client: keeps their order, and limits the memory that a slow client can use.
 
-Control frames are always written to the socket's buffer. Data frames are written while the buffer is below its limit;
-beyond it only the newest frame of each subscription is kept and sent when the buffer has drained. A client is
-disconnected if even control frames fill `_CONTROL_FACTOR` times the limit.
+Control messages always wait for their turn. Data messages do, while fewer bytes than the limit wait here and in the
+transport; beyond it only the newest message of each subscription is kept, until all others have been sent. A client is
+disconnected if even control messages fill `_CONTROL_FACTOR` times the limit.
 """
 
 from __future__ import annotations
 
+import asyncio
 import time
+from collections import deque
 from collections.abc import Callable
 
-from websockets.protocol import State
+__all__ = ["ClientSendQueue", "Message", "Pong"]
 
-from thymio_sim_ros.bridge.framing import data_frame, framed
-from thymio_sim_ros.bridge.protocol.constants import StatusLevel
-from thymio_sim_ros.bridge.protocol.messages import Status
-from thymio_sim_ros.bridge.protocol.wire import encode_server
-from thymio_sim_ros.bridge.rosbridge import frames
-from thymio_sim_ros.bridge.transport import SharedConnection
-
-SendFunction = Callable[[int, bytes], bool]
-"""Sends a payload with its time in ns; returns False if the frame was kept for later."""
+Message = str | bytes
 
 _CONTROL_FACTOR = 8
 _WARNING_PERIOD_S = 30.0
-# The vendor's clients recognize the first words and show a hint.
-_WARNING = "Send buffer limit reached: this connection is slow, only newest messages are sent"
-_FOXGLOVE_WARNING = framed(encode_server(Status(StatusLevel.WARNING, _WARNING)))
-_ROSBRIDGE_WARNING = framed(frames.as_json(frames.status("warning", _WARNING)))
+
+
+class Pong(bytes):
+    """The answer to a ping, with its content."""
 
 
 class ClientSendQueue:
-    """Frames for one connection. Any thread may call it, but only one at a time."""
+    """Messages for one client. Only for the thread of the event loop."""
 
-    def __init__(self, connection: SharedConnection, limit: int) -> None:
-        """`limit`: bytes in the socket's buffer above which data frames are kept."""
-        self._warning = _ROSBRIDGE_WARNING if connection.is_rosbridge else _FOXGLOVE_WARNING
-        self._protocol = connection.protocol
-        self._transport = connection.transport
-        self._limit = limit
-        self._newest: dict[int, bytes] = {}
+    def __init__(self, limit: int, *, warning: Message, buffered: Callable[[], int], abort: Callable[[], None]) -> None:
+        """`limit`: bytes above which only the newest data messages are kept.
+
+        `warning` is sent to a client that is slow; `buffered` returns the bytes that its transport has not sent yet,
+        `abort` closes its connection at once.
+        """
+        self._limit, self._warning, self.buffered, self.abort = limit, warning, buffered, abort
+        self._waiting: deque[Message] = deque()
+        self._size = 0
+        """Bytes of `_waiting`; characters of texts count as one."""
+        self._newest: dict[int, tuple[Message, ...]] = {}
+        """The newest messages of subscriptions, which are sent after `_waiting`."""
+        self._arrived = asyncio.Event()
         self._next_warning_s = float("-inf")
 
     @property
-    def has_backlog(self) -> bool:
-        """Whether data frames are kept until the socket's buffer has room."""
-        return bool(self._newest)
+    def size(self) -> int:
+        """Bytes that wait here and in the transport, without the newest messages of subscriptions."""
+        return self._size + self.buffered()
 
-    def send_control(self, frame: bytes) -> None:
-        """Send a frame that must not be lost, of any size; disconnect the client if too many bytes are buffered."""
-        if self._transport.get_write_buffer_size() > _CONTROL_FACTOR * self._limit:
-            self._transport.abort()
-        elif self._is_open():
-            self._transport.write(frame)
+    def put_control(self, *messages: Message) -> None:
+        """Add messages that must not be lost, of any size; disconnect the client if too many bytes wait."""
+        if self.size > _CONTROL_FACTOR * self._limit:
+            self.abort()
+        else:
+            self._append(messages)
 
-    def sender(self, subscription_id: int) -> SendFunction:
-        """A function that sends messages of one subscription.
-
-        This is the hot path: the function binds everything it needs once, because attribute look-ups and calls cost
-        more than the rest.
-        """
-        protocol, try_write, limit, newest = self._protocol, self._transport.try_write, self._limit, self._newest
-        later, keep, is_open = self.send_data, self._keep, State.OPEN
-
-        def send(time_ns: int, payload: bytes) -> bool:
-            frame = data_frame(subscription_id, time_ns, payload)
-            if newest:
-                return later(subscription_id, frame)
-            if protocol.state is not is_open or try_write(frame, limit):
-                return True
-            keep(subscription_id, frame)
-            return False
-
-        return send
-
-    def send_data(self, subscription_id: int, frame: bytes) -> bool:
-        """Send a frame, or keep it as the newest of its subscription and return False."""
-        self.flush()
-        if not self._newest and self._try_write(frame):
-            return True
-        self._keep(subscription_id, frame)
-        return False
-
-    def _keep(self, subscription_id: int, frame: bytes) -> None:
-        self._newest[subscription_id] = frame
+    def put_data(self, subscription_id: int, *messages: Message) -> None:
+        """Add messages, or keep them as the newest of their subscription."""
+        if not self._newest and self._size + self.buffered() <= self._limit:
+            self._append(messages)
+            return
+        self._newest[subscription_id] = messages
+        self._arrived.set()
         now_s = time.monotonic()
         if now_s >= self._next_warning_s:
             self._next_warning_s = now_s + _WARNING_PERIOD_S
-            self.send_control(self._warning)
-
-    def flush(self) -> None:
-        """Send kept frames while there is room."""
-        while self._newest:
-            subscription_id = next(iter(self._newest))
-            if not self._try_write(self._newest[subscription_id]):
-                return
-            del self._newest[subscription_id]
+            self.put_control(self._warning)
 
     def discard(self, subscription_id: int) -> None:
-        """Drop the frame kept for an ended subscription."""
+        """Drop the messages kept for an ended subscription."""
         self._newest.pop(subscription_id, None)
 
-    def abort(self) -> None:
-        """Close the connection without waiting for the client."""
-        self._transport.abort()
+    def pop(self) -> Message | None:
+        """The next message; None if there is none."""
+        if not self._waiting:
+            for messages in self._newest.values():
+                self._append(messages)
+            self._newest.clear()
+            if not self._waiting:
+                return None
+        message = self._waiting.popleft()
+        self._size -= len(message)
+        return message
 
-    def _try_write(self, frame: bytes) -> bool:
-        """Write a frame unless the buffer is over its limit; return False if it was not written."""
-        return not self._is_open() or self._transport.try_write(frame, self._limit)
+    async def wait(self) -> None:
+        """Wait until there is a message."""
+        while not self._waiting and not self._newest:
+            self._arrived.clear()
+            await self._arrived.wait()
 
-    def _is_open(self) -> bool:
-        """Whether frames may be sent: none may follow a close frame."""
-        return self._protocol.state is State.OPEN
+    def _append(self, messages: tuple[Message, ...]) -> None:
+        for message in messages:
+            self._waiting.append(message)
+            self._size += len(message)
+        self._arrived.set()

@@ -2,39 +2,43 @@
 
 from __future__ import annotations
 
-import contextlib
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from http import HTTPStatus
-
-from websockets.asyncio.server import ServerConnection
-from websockets.datastructures import Headers
-from websockets.exceptions import ConnectionClosed, NegotiationError
-from websockets.http11 import Request, Response
-from websockets.typing import Subprotocol
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError, given_token
 from thymio_sim_ros.bridge.origin_policy import is_allowed
-from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS, StatusLevel
-from thymio_sim_ros.bridge.protocol.messages import Status
-from thymio_sim_ros.bridge.protocol.wire import encode_server
+from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS, Role
 from thymio_sim_ros.bridge.report_limiter import ReportLimiter
-from thymio_sim_ros.bridge.rosbridge import frames
-from thymio_sim_ros.bridge.transport import SharedConnection
+from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["WRONG_TOKEN", "HandshakeCheck", "select_subprotocol"]
+if TYPE_CHECKING:
+    from aiohttp.web import BaseRequest
+
+__all__ = ["WRONG_TOKEN", "HandshakeCheck", "RefusedError", "select_subprotocol", "token_problem"]
 
 WRONG_TOKEN = 4401
 """Close code for a page without a valid token: browsers hide the reason of a rejected handshake from pages."""
 
+_NO_HEADERS: Mapping[str, str] = MappingProxyType({})
 _NO_TOKEN_TEXT = "a token is needed: open the whole address in the simulator's terminal, or append ?token=… to yours"
 _WRONG_TOKEN_TEXT = (
     "the token is wrong or from an earlier start: open the address that the simulator's terminal shows now"
 )
 
 
+class RefusedError(ThymioSimError):
+    """A request that is answered with an HTTP status, a reason and headers."""
+
+    def __init__(self, status: HTTPStatus, text: str, headers: Mapping[str, str] = _NO_HEADERS) -> None:
+        super().__init__(text)
+        self.status, self.headers = status, headers
+
+
 class HandshakeCheck:
-    """Decides who may connect. It sets `role` of a connection; None: the connection must be closed by `reject`."""
+    """Decides who may connect."""
 
     def __init__(self, tokens: Tokens, allowed_origins: Sequence[str], log: logging.Logger) -> None:
         self._tokens = tokens
@@ -42,71 +46,54 @@ class HandshakeCheck:
         self._check = TokenCheck(tokens, allowed_origins)
         self._warn = ReportLimiter(lambda text: log.warning("%s", text))
 
-    async def check(self, connection: ServerConnection, request: Request) -> Response | None:
-        """The response that rejects a handshake without a valid token or from a foreign page, otherwise None.
+    async def role(self, request: BaseRequest) -> Role | None:
+        """The role of a client. Raises RefusedError without a valid token, and for a foreign page.
 
-        With a valid token any page is accepted. Without one, a page is accepted for now, because browsers show it only
-        the close code of an open connection.
+        With a valid token any page is accepted. Without one the role of a page is None: it must be accepted and get the
+        reason (`token_problem`), because browsers show it only the close code of an open connection.
         """
-        assert isinstance(connection, SharedConnection)
-        address = _address(connection)
-        token = given_token(request.path, request.headers.get_all("Authorization"))
-        origin, host = _header(request.headers, "Origin"), _header(request.headers, "Host")
+        address = request.remote or ""
+        origin, host = _header(request, "Origin"), _header(request, "Host")
         try:
-            connection.role = await self._check.role(token, address, origin=origin, host=host)
+            role = await self._check.role(_token(request), address, origin=origin, host=host)
         except TooManyAttemptsError as error:
             self._warn("attempts", f"connections from {address} are rejected for some seconds: too many wrong tokens")
-            return connection.respond(HTTPStatus.TOO_MANY_REQUESTS, f"{error}\n")
-        if connection.role is None:
+            raise RefusedError(HTTPStatus.TOO_MANY_REQUESTS, str(error)) from error
+        if role is None:
             self._warn("token", f"connection from {address} rejected: its token is wrong or missing")
-            if origin is not None:
-                return None  # `reject` sends the reason
-            response = connection.respond(HTTPStatus.UNAUTHORIZED, f"{_token_text(request)}\n")
-            response.headers["WWW-Authenticate"] = "Bearer"
-            return response
-        if self._tokens.is_required or is_allowed(origin, host, self._allowed_origins):
-            return None
-        self._warn("origin", f"web page from {origin:.100} rejected: add it to allowed_origins if it is yours")
-        return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
-
-    async def reject(self, connection: SharedConnection) -> None:
-        """Send a status with the reason why the token was not accepted, and close the connection."""
-        assert connection.request is not None
-        text = _token_text(connection.request)
-        status = (
-            frames.as_json(frames.status("error", text, "access"))
-            if connection.is_rosbridge
-            else encode_server(Status(StatusLevel.ERROR, text, "access"))
-        )
-        with contextlib.suppress(ConnectionClosed):
-            await connection.send(status)
-            await connection.close(WRONG_TOKEN, "wrong or missing token")
+            if origin is None:
+                raise RefusedError(HTTPStatus.UNAUTHORIZED, token_problem(request), {"WWW-Authenticate": "Bearer"})
+        elif not self._tokens.is_required and not is_allowed(origin, host, self._allowed_origins):
+            self._warn("origin", f"web page from {origin:.100} rejected: add it to allowed_origins if it is yours")
+            raise RefusedError(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.")
+        return role
 
 
-def select_subprotocol(_connection: ServerConnection, offered: Sequence[Subprotocol]) -> Subprotocol | None:
+def select_subprotocol(request: BaseRequest) -> str | None:
     """The first of `SUBPROTOCOLS` that a client offers; None if it offers nothing, as clients of rosbridge do.
 
-    Raises NegotiationError if it offers others only.
+    Raises RefusedError if it offers others only.
     """
-    if not offered:
+    offered = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
+    if not any(offered):
         return None
     for name in SUBPROTOCOLS:
         if name in offered:
             return name
-    raise NegotiationError(f"offer one of the sub-protocols {', '.join(SUBPROTOCOLS)}, or none for rosbridge")
+    names = ", ".join(SUBPROTOCOLS)
+    raise RefusedError(HTTPStatus.BAD_REQUEST, f"offer one of the sub-protocols {names}, or none for rosbridge")
 
 
-def _address(connection: ServerConnection) -> str:
-    peer = connection.remote_address
-    return str(peer[0]) if peer else ""
+def token_problem(request: BaseRequest) -> str:
+    """What is wrong with the token of a request, as text for the user."""
+    return _NO_TOKEN_TEXT if _token(request) is None else _WRONG_TOKEN_TEXT
 
 
-def _token_text(request: Request) -> str:
-    given = given_token(request.path, request.headers.get_all("Authorization"))
-    return _NO_TOKEN_TEXT if given is None else _WRONG_TOKEN_TEXT
+def _token(request: BaseRequest) -> str | None:
+    return given_token(request.raw_path, request.headers.getall("Authorization", []))
 
 
-def _header(headers: Headers, name: str) -> str | None:
+def _header(request: BaseRequest, name: str) -> str | None:
     """The header's value, the last one if it is repeated."""
-    values = headers.get_all(name)
+    values = request.headers.getall(name, [])
     return values[-1] if values else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ssl
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -38,10 +37,9 @@ class ServerSettings:
     """Size of the longest frame accepted from a client, bytes. One of up to `REFUSED_FACTOR` times that is answered
     with the reason, a longer one ends the connection."""
     max_clients: int = 128
-    """Maximum number of clients. The same number of connections may be in their handshake."""
-    ping_interval_s: float = 10.0
-    ping_timeout_s: float = 20.0
-    tls: ssl.SSLContext | None = None
+    """Maximum number of clients."""
+    heartbeat_s: float = 30.0
+    """Time without a message after which a client is pinged; it has half of this time to answer, s."""
     tokens: Tokens = field(default_factory=Tokens)
     is_read_only_service: Callable[[str], bool] = lambda service: False
     """Whether a read-only client may call a service, by name."""

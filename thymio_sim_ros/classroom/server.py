@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from socket import socket
 
@@ -71,11 +70,13 @@ async def serve_class(
     """Serve the teacher's page on listening sockets until this task is cancelled; `folder` has the built page."""
     log = logging.getLogger(__name__)
     report = ReportLimiter(lambda text: log.warning("teacher's page: %s", text))
-    settings = Settings(_port(listeners), is_loopback=is_loopback, max_connections=max_connections())
-    with ThreadPoolExecutor(2, "page") as pool:
-        page = Page(Content(folder, b"{}", index=_INDEX), settings, report, pool)
-        teacher = _Teacher(classroom, page, token)
-        await serve_connections(listeners, teacher.answer, settings.max_connections, report, asyncio.Event())
+    settings = Settings(_port(listeners), is_loopback=is_loopback)
+    page = Page(Content(folder, b"{}", index=_INDEX), settings, report)
+    teacher = _Teacher(classroom, page, token)
+    try:
+        await serve_connections(listeners, teacher.answer, max_connections(), report, asyncio.Event())
+    finally:
+        await page.close()
 
 
 def _port(listeners: Iterable[socket]) -> int:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from thymio_sim_ros.bridge.access import is_loopback
-from thymio_sim_ros.bridge.server_thread import check_free, listen
+from thymio_sim_ros.bridge.listening import check_free, listen
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import ClassFolder, Place

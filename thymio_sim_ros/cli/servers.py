@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass
 
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
-from thymio_sim_ros.bridge.server_thread import check_free
+from thymio_sim_ros.bridge.listening import check_free
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.network.settings import (

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import thymio_sim_ros
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens, is_loopback
-from thymio_sim_ros.bridge.server_thread import check_free
+from thymio_sim_ros.bridge.listening import check_free
 from thymio_sim_ros.cli.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import (

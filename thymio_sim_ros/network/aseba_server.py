@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 
 from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode, encode
 from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
-from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.acceptor import Acceptor
 from thymio_sim_ros.network.hub import Connection, Hub, Network

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from aseba_vm.protocol import FrameReader, Message, ProtocolError, decode
-from thymio_sim_ros.bridge.server_thread import detect_lost_peer
+from thymio_sim_ros.bridge.listening import detect_lost_peer
 from thymio_sim_ros.network.robot_target import SerialTarget, Target, TcpTarget
 from thymio_sim_ros.network.serial_stream import SerialStream
 

@@ -4,29 +4,27 @@ from __future__ import annotations
 
 import asyncio
 import ipaddress
-import logging
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from http import HTTPStatus
-from socket import socket
-from typing import Protocol, cast
+from typing import Protocol
 
-from websockets.asyncio.server import Server, ServerConnection, broadcast, serve
-from websockets.exceptions import ConnectionClosed
-from websockets.http11 import Request, Response
+from aiohttp import web
 
+from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue
+from thymio_sim_ros.bridge.client_socket import ClientSocket
+from thymio_sim_ros.bridge.handshake import RefusedError
 from thymio_sim_ros.bridge.origin_policy import is_allowed
-from thymio_sim_ros.bridge.transport import ConnectionMaker
 from thymio_sim_ros.network.tdm.protocol.codec import MAX_MESSAGE_BYTES, StreamReader, framed
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError
 
-__all__ = ["Peer", "Report", "TcpPeer", "WebSocketPeer", "is_this_computer", "serve_websocket"]
+__all__ = ["Peer", "Report", "TcpPeer", "WebSocketPeer", "accept_websocket", "is_this_computer"]
 
 Report = Callable[[str, str], None]
 """Takes a warning: what it is about, so that repetitions can be limited, and the text."""
 
 _READ_BYTES = 1 << 16
-_CLOSE_S = 0.3
-"""Time that clients have to answer the closing handshake."""
+_HEARTBEAT_S = 30.0
+"""Time without a message after which a client of the WebSocket port is pinged."""
 
 
 class Peer(Protocol):
@@ -91,37 +89,43 @@ class TcpPeer:
 class WebSocketPeer:
     """A client of the WebSocket port: each message is a binary frame."""
 
-    def __init__(self, connection: ServerConnection) -> None:
-        self._connection = connection
-        peer = connection.remote_address
-        self.address = str(peer[0]) if peer else ""
+    def __init__(self, socket: ClientSocket, transport: asyncio.Transport, max_unsent: int) -> None:
+        """Serve a client whose handshake is complete; `max_unsent`: see `TdmServer`."""
+        self.response = socket.response
+        """The answer to the client's request."""
+        self._socket, self._transport = socket, transport
+        self._queue = ClientSendQueue(
+            max_unsent, warning=b"", buffered=transport.get_write_buffer_size, abort=transport.abort
+        )
+        self.address = socket.address
+        socket.send_from(self._queue)
 
     async def buffers(self) -> AsyncIterator[bytes]:
         """The buffers that arrive, until the connection ends."""
         try:
-            async for frame in self._connection:
-                if isinstance(frame, str):
+            async for message in self._socket.messages(self._queue):
+                if isinstance(message, str):
                     raise TdmFrameError("frame", "a binary frame", "a text")
-                yield frame
-        except ConnectionClosed:
-            pass  # a lost connection is handled like a closed one
+                yield message
+        finally:
+            self._socket.stop_sending()
 
     def send(self, buffer: bytes) -> None:
         """Send a buffer as a frame."""
-        broadcast((self._connection,), buffer)
+        self._queue.put_control(buffer)
 
     @property
     def backlog(self) -> int:
         """Bytes that wait until the client reads."""
-        return self._connection.transport.get_write_buffer_size()
+        return self._queue.size
 
     def close(self) -> None:
         """Close the connection after what has been sent."""
-        self._connection.transport.close()
+        self._transport.close()
 
     def abort(self) -> None:
         """Close the connection at once."""
-        self._connection.transport.abort()
+        self._transport.abort()
 
 
 def is_this_computer(address: str) -> bool:
@@ -134,43 +138,17 @@ def is_this_computer(address: str) -> bool:
     return (mapped or number).is_loopback
 
 
-async def serve_websocket(
-    listener: socket,
-    handle: Callable[[Peer], Awaitable[None]],
-    allowed_origins: Sequence[str],
-    report: Report,
-    max_connections: int,
-) -> Server:
-    """Serve clients on a bound socket, except foreign web pages (`bridge.origin_policy`).
+async def accept_websocket(
+    request: web.BaseRequest, allowed_origins: Sequence[str], report: Report, max_unsent: int
+) -> WebSocketPeer | None:
+    """Make the handshake with a client, except foreign web pages (`bridge.origin_policy`); None: it has left.
 
-    Pings and parts of messages of one client delay the others no more than its messages do.
+    Raises RefusedError for a client that is rejected.
     """
-
-    async def handle_connection(connection: ServerConnection) -> None:
-        await handle(WebSocketPeer(connection))
-
-    def check_origin(connection: ServerConnection, request: Request) -> Response | None:
-        origins, hosts = request.headers.get_all("Origin"), request.headers.get_all("Host")
-        origin = origins[-1] if origins else None
-        if is_allowed(origin, hosts[-1] if hosts else None, allowed_origins):
-            return None
+    origin, host = (request.headers.getall(name, [None])[-1] for name in ("Origin", "Host"))
+    if not is_allowed(origin, host, allowed_origins):
         report("tdm origin", f"web page from {origin:.100} rejected: add it to allowed_origins if it is yours")
-        return connection.respond(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.\n")
-
-    def report_refused() -> None:
-        report("tdm connections", f"{max_connections} connections to port {port}: more are refused")
-
-    port = listener.getsockname()[1]
-    log = logging.getLogger(f"{__name__}.websockets")
-    log.setLevel(logging.CRITICAL)  # it logs each rejected handshake with a traceback
-    return await serve(
-        handle_connection,
-        sock=listener,
-        create_connection=cast("type[ServerConnection]", ConnectionMaker(max_connections, report_refused)),
-        process_request=check_origin,
-        compression=None,
-        server_header=None,
-        max_size=MAX_MESSAGE_BYTES,
-        close_timeout=_CLOSE_S,
-        logger=log,
-    )
+        raise RefusedError(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.")
+    socket = await ClientSocket.accept(request, max_size=MAX_MESSAGE_BYTES, heartbeat_s=_HEARTBEAT_S)
+    transport = request.transport
+    return None if transport is None else WebSocketPeer(socket, transport, max_unsent)

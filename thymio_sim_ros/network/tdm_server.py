@@ -13,18 +13,18 @@ import contextlib
 import itertools
 import time
 import traceback
-from collections.abc import Callable, Coroutine, Iterable, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from socket import SO_SNDBUF, SOL_SOCKET, socket
 from uuid import uuid4
 
-from websockets.asyncio.server import Server
+from aiohttp import web
 
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError
 from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
-from thymio_sim_ros.bridge.server_thread import listen
+from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.acceptor import Acceptor
 from thymio_sim_ros.network.hub import Connection, Hub, Network
@@ -37,7 +37,9 @@ from thymio_sim_ros.network.tdm.protocol.constants import NodeType
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError
 from thymio_sim_ros.network.tdm.protocol.messages import ConnectionHandshake
 from thymio_sim_ros.network.tdm.protocol.messages import Message as TdmMessage
-from thymio_sim_ros.network.tdm_peers import Peer, Report, TcpPeer, is_this_computer, serve_websocket
+from thymio_sim_ros.network.tdm_peers import Peer, Report, TcpPeer, accept_websocket, is_this_computer
+from thymio_sim_ros.web.application import Application
+from thymio_sim_ros.web.http_connections import HttpConnections
 
 __all__ = ["MAX_CLIENTS", "MAX_UNSENT", "TdmServer"]
 
@@ -54,8 +56,6 @@ _CONGESTED, _DRAINED = 1 << 18, 1 << 15
 """Bytes that wait for a client, from which and below which it counts as slow and as fast again."""
 _KERNEL_BUFFER = 1 << 16
 """Bytes for a client in the kernel; those beyond are counted here."""
-_CLOSE_S = 1.0
-"""Longest time that connections have to close."""
 _FULL_PAUSE_S = 0.005
 """Time after which a client that had to pause, because messages wait for the robots, is read again."""
 
@@ -97,8 +97,8 @@ class TdmServer:
         self._congested: set[int] = set()
         self._client_numbers = itertools.count(1)
         self._acceptor: Acceptor
-        self._servers: list[Server] = []
-        """The WebSocket servers, one for each address."""
+        self._websockets: HttpConnections
+        """The connections to the WebSocket port."""
         self._tasks: set[asyncio.Task[None]] = set()
         self._compiler = ThreadPoolExecutor(1, "tdm-compiler")
         self._throttle = Throttle(_SLICE_S)
@@ -123,7 +123,12 @@ class TdmServer:
         self._manager = DeviceManager(manager, self._now_ns())
         self._hub.follow(self)
         self._acceptor = Acceptor(tcp, self._serve_tcp, self._report_error)
-        self._run(self._open(websocket))
+        self._websocket_listeners = websocket
+        application = Application()
+        application.websockets["/"] = self.handle
+        connections = 2 * self._max_clients  # of which half may be in their handshake
+        self._websockets = HttpConnections(application.answer, connections, self._report, asyncio.get_running_loop())
+        self._websockets.accept(websocket)
         self._run(self._advance())
         self._opened(self)
 
@@ -134,17 +139,15 @@ class TdmServer:
         self.port = self.ws_port = OFF
         self._hub.unfollow(self)
         self._acceptor.close()
-        for server in self._servers:
-            server.close()
         for peer in self._peers.values():
             peer.abort()
         for task in self._tasks:
             task.cancel()
         await self._acceptor.wait_closed()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        closed = [asyncio.create_task(server.wait_closed()) for server in self._servers]
-        if closed:
-            await asyncio.wait(closed, timeout=_CLOSE_S)
+        await self._websockets.close()
+        for listener in self._websocket_listeners:
+            listener.close()
         for link in self._links.values():
             link.close()
         self._compiler.shutdown(wait=False, cancel_futures=True)
@@ -186,12 +189,12 @@ class TdmServer:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _open(self, websocket: Iterable[socket]) -> None:
-        """Accept connections to the WebSocket port."""
-        origins = self._settings.allowed_origins
-        for listener in websocket:
-            connections = 2 * self._max_clients  # of which half may be in their handshake
-            self._servers.append(await serve_websocket(listener, self._serve, origins, self._report, connections))
+    async def handle(self, request: web.BaseRequest) -> web.StreamResponse:
+        """Serve a client that asks for a WebSocket, until it disconnects. Raises RefusedError for a foreign page."""
+        peer = await accept_websocket(request, self._settings.allowed_origins, self._report, self._max_unsent)
+        if peer is not None:
+            await self._serve(peer)
+        return web.Response() if peer is None else peer.response
 
     async def _advance(self) -> None:
         while True:

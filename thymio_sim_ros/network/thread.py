@@ -133,8 +133,9 @@ class NetworkThread:
             aseba.ports_changed = lambda: self._set_ports(aseba)
             servers.append(aseba)
         if settings.tdm_port != OFF:
-            if importlib.util.find_spec("flatbuffers") is None:
-                self.report("tdm", "Thymio Device Manager: off, as the package flatbuffers is not installed")
+            missing = [name for name in ("flatbuffers", "aiohttp") if importlib.util.find_spec(name) is None]
+            if missing:
+                self.report("tdm", f"Thymio Device Manager: off, as the package {missing[0]} is not installed")
             else:
                 from thymio_sim_ros.network.tdm_server import TdmServer
 

@@ -1,17 +1,17 @@
-"""HTTP connections with limits, on aiohttp: the part that all HTTP servers of this project share.
+"""HTTP and WebSocket connections with limits, on aiohttp: the part that all HTTP servers of this project share.
 
 aiohttp itself has no limits for clients that connect and send nothing, send slowly, or do not read. Each connection
-has a slot (`connections`), whose phase follows the traffic; `serve_connections` closes those that are overdue. A server
+has a slot (`connections`), whose phase follows the traffic; `HttpConnections` closes those that are overdue. A server
 is a function from a request to a response; it calls `start_answer` once the request is complete, and `start_stream` if
-the answer has no end.
+the answer has no end. A connection that becomes a WebSocket is a stream: its server limits what it sends and receives.
 """
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import selectors
+import ssl
 from collections.abc import Awaitable, Callable, Iterable, Mapping
 from functools import partial
 from socket import SO_SNDBUF, SOL_SOCKET, socket
@@ -22,7 +22,16 @@ from aiohttp import StreamReader, web
 
 from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
 
-__all__ = ["COMMON_HEADERS", "Handler", "Report", "serve_connections", "start_answer", "start_stream", "text_response"]
+__all__ = [
+    "COMMON_HEADERS",
+    "Handler",
+    "HttpConnections",
+    "Report",
+    "serve_connections",
+    "start_answer",
+    "start_stream",
+    "text_response",
+]
 
 Handler = Callable[[web.BaseRequest], Awaitable[web.StreamResponse]]
 
@@ -66,6 +75,7 @@ class _Connection(web.RequestHandler):
         self._report = report
         self._ahead = 0
         self._busy = Phase.ANSWERING
+        self._is_websocket = False
         self._stream: asyncio.Task[Any] | None = None
         self._body: StreamReader | None = None
         """The body of the request that is answered; its unread part is dropped after the answer."""
@@ -94,7 +104,7 @@ class _Connection(web.RequestHandler):
         slot = self._slot
         if slot.phase in (Phase.SILENT, Phase.IDLE):
             self._connections.set_phase(slot, Phase.READING)
-        elif slot.phase is not Phase.READING:
+        elif slot.phase is not Phase.READING and not self._is_websocket:
             self._ahead += len(data)
             if self._ahead > MAX_AHEAD:
                 slot.close()
@@ -107,9 +117,10 @@ class _Connection(web.RequestHandler):
             self.force_close()
 
     def pause_writing(self) -> None:
-        """Note that the client reads more slowly than the answer is sent."""
+        """Note that the client reads more slowly than the answer is sent; WebSockets have limits and pings for that."""
         super().pause_writing()
-        self._connections.set_phase(self._slot, Phase.STALLED)
+        if not self._is_websocket:
+            self._connections.set_phase(self._slot, Phase.STALLED)
 
     def resume_writing(self) -> None:
         """Note that the client reads again."""
@@ -124,6 +135,12 @@ class _Connection(web.RequestHandler):
         """Note that the answer has no end; the current task, which writes it, is canceled when the client leaves."""
         self._busy, self._stream = Phase.STREAMING, asyncio.current_task()
         self._connections.set_phase(self._slot, Phase.STREAMING)
+
+    def set_parser(self, *arguments: Any, **options: Any) -> None:
+        """Note that the connection has become a WebSocket, as aiohttp does at the end of the handshake."""
+        self._is_websocket = True
+        self._connections.set_phase(self._slot, Phase.STREAMING)
+        super().set_parser(*arguments, **options)
 
     async def finish_response(self, request: web.BaseRequest, *arguments: Any, **options: Any) -> Any:
         """Send an answer; afterwards the client may send another request."""
@@ -159,27 +176,52 @@ class _Acceptor:
         self._connections = connections
         self._report = report
         self._log = log
+        self._handshakes: set[asyncio.Task[None]] = set()
+        """Handshakes of TLS that are not complete."""
 
-    async def accept_forever(self, listener: socket) -> None:
-        """Accept the connections of a listening socket, until it is cancelled."""
+    async def accept_forever(self, listener: socket, tls: ssl.SSLContext | None) -> None:
+        """Accept the connections of a listening socket, until it is canceled."""
         loop = asyncio.get_running_loop()
         listener.setblocking(False)
         listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)  # accepted sockets inherit it
         listener.listen(BACKLOG)
         while True:
+            await _readable(listener)
             try:
-                accepted, peer = await loop.sock_accept(listener)
-            except OSError as error:  # out of file descriptors, or the client has disconnected
+                accepted, peer = listener.accept()
+            except (BlockingIOError, InterruptedError, ConnectionAbortedError):  # the client has disconnected
+                continue
+            except OSError as error:  # out of file descriptors
                 self._report("accept", f"connections cannot be accepted: {error.strerror}")
                 await asyncio.sleep(_SWEEP_S)
                 continue
-            while self._connections.is_full:
-                self._report("full", "the maximum number of connections is reached; more have to wait")
-                await self._make_room()
-            slot = self._connections.add(str(peer[0]))
+            accepted.setblocking(False)
             try:
-                await loop.connect_accepted_socket(partial(self._connection, slot), accepted)
-            except OSError:  # the client has disconnected
+                while self._connections.is_full:
+                    self._report("full", "the maximum number of connections is reached; more have to wait")
+                    await self._make_room()
+            except asyncio.CancelledError:
+                accepted.close()
+                raise
+            slot = self._connections.add(str(peer[0]))
+            if tls is None:
+                await self._connect(slot, accepted)
+            else:  # the handshake takes as long as the client wants, and other clients do not wait for it
+                task = loop.create_task(self._connect(slot, accepted, tls))
+                slot.close = task.cancel
+                self._handshakes.add(task)
+                task.add_done_callback(self._handshakes.discard)
+
+    async def _connect(self, slot: ConnectionSlot, accepted: socket, tls: ssl.SSLContext | None = None) -> None:
+        loop = asyncio.get_running_loop()
+        is_connected = False
+        try:
+            await loop.connect_accepted_socket(partial(self._connection, slot), accepted, ssl=tls)
+            is_connected = True
+        except OSError:  # the client has disconnected, or makes no handshake
+            pass
+        finally:
+            if not is_connected:
                 self._connections.remove(slot)
                 accepted.close()
 
@@ -224,27 +266,57 @@ def text_response(status: int, text: str, headers: Mapping[str, str] = MappingPr
     return web.Response(status=status, body=f"{text}\n".encode(), headers=given)
 
 
+class HttpConnections:
+    """The connections of all listening sockets of a server. Only for the thread of the event loop."""
+
+    def __init__(self, answer: Handler, max_connections: int, report: Report, loop: asyncio.AbstractEventLoop) -> None:
+        self._log = logging.getLogger(__name__)
+        self._log.setLevel(logging.CRITICAL)  # invalid requests are not logged; internal errors go to `report`
+        self._loop = loop
+        self.slots = Connections(max_connections, loop.time)
+        """The open connections."""
+        self._server = web.Server(answer, loop=loop)
+        self._acceptor = _Acceptor(self._server, self.slots, report, self._log)
+        self._tasks = [self._loop.create_task(self._close_overdue())]
+
+    def accept(self, listeners: Iterable[socket], tls: ssl.SSLContext | None = None) -> None:
+        """Accept the connections of further sockets."""
+        self._tasks += [self._loop.create_task(self._acceptor.accept_forever(listener, tls)) for listener in listeners]
+
+    async def close(self) -> None:
+        """Accept no more connections, and close those that are open; the listening sockets stay as they are."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._server.shutdown(_CLOSE_S)
+
+    async def _close_overdue(self) -> None:
+        while True:
+            await asyncio.sleep(_SWEEP_S)
+            self.slots.close_overdue()
+
+
 async def serve_connections(
     listeners: Iterable[socket], answer: Handler, max_connections: int, report: Report, stop: asyncio.Event
 ) -> None:
     """Serve on listening sockets until `stop` is set; open connections are closed then."""
-    loop = asyncio.get_running_loop()
-    connections = Connections(max_connections, loop.time)
-    log = logging.getLogger(__name__)
-    log.setLevel(logging.CRITICAL)  # invalid requests are not logged; internal errors go to `report`
-    server = web.Server(answer)
-    acceptor = _Acceptor(server, connections, report, log)
-    tasks = [loop.create_task(acceptor.accept_forever(listener)) for listener in listeners]
+    connections = HttpConnections(answer, max_connections, report, asyncio.get_running_loop())
+    connections.accept(listeners)
     try:
-        while not stop.is_set():
-            with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(stop.wait(), _SWEEP_S)
-            connections.close_overdue()
+        await stop.wait()
     finally:
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-        await server.shutdown(_CLOSE_S)
+        await connections.close()
+
+
+async def _readable(listener: socket) -> None:
+    """Wait for a connection. `loop.sock_accept` would lose one that it accepts while it is canceled."""
+    loop = asyncio.get_running_loop()
+    ready = asyncio.Event()
+    loop.add_reader(listener, ready.set)
+    try:
+        await ready.wait()
+    finally:
+        loop.remove_reader(listener)
 
 
 def _is_ready(descriptor: int, events: int) -> bool:

@@ -7,10 +7,8 @@ from __future__ import annotations
 
 import asyncio
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from socket import socket
-from typing import Any
 
 from aiohttp import web
 
@@ -18,10 +16,10 @@ from thymio_sim_ros.files.resources import PAGE_BUILD_HINT
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 from thymio_sim_ros.web.content import TYPES, Content, Document
 from thymio_sim_ros.web.hosts import host_name
-from thymio_sim_ros.web.http_connections import COMMON_HEADERS, Report, serve_connections, start_answer, text_response
+from thymio_sim_ros.web.http_connections import COMMON_HEADERS, Report, start_answer, text_response
 from thymio_sim_ros.web.settings import Settings
 
-__all__ = ["Page", "serve"]
+__all__ = ["Page"]
 
 _CHUNK = 32_768
 """Bytes that are written in one iteration of the event loop: data that a client does not read is not copied as a whole,
@@ -35,11 +33,15 @@ _GZIP = re.compile(r"(?:^|,)\s*gzip\s*(?:;\s*q=(?!0(?:\.0*)?\s*(?:,|$))[\d.]+\s*
 class Page:
     """Creates the responses to requests."""
 
-    def __init__(self, content: Content, settings: Settings, report: Report, pool: ThreadPoolExecutor) -> None:
+    def __init__(self, content: Content, settings: Settings, report: Report) -> None:
         self._content = content
         self._settings = settings
         self._report = report
-        self._pool = pool
+        self._pool = ThreadPoolExecutor(2, "page")
+
+    async def close(self) -> None:
+        """End the helper threads."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
@@ -93,17 +95,6 @@ class Page:
         return response
 
 
-async def serve(
-    listeners: Iterable[socket], content: Content, settings: Settings, report: Report, stop: asyncio.Event
-) -> None:
-    """Serve on listening sockets, which the server then owns, until `stop` is set."""
-    loop = asyncio.get_running_loop()
-    loop.set_exception_handler(lambda _loop, context: report(_kind(context), _description(context)))
-    with ThreadPoolExecutor(2, "page") as pool:
-        page = Page(content, settings, report, pool)
-        await serve_connections(listeners, page.answer, settings.max_connections, report, stop)
-
-
 def _response(status: int, body: bytes, media_type: str, headers: Mapping[str, str]) -> web.Response:
     return web.Response(status=status, body=body, headers={**COMMON_HEADERS, "Content-Type": media_type, **headers})
 
@@ -124,11 +115,3 @@ def _has_tag(wanted: str, tag: str) -> bool:
     """Whether an If-None-Match header names the tag, weakly compared (RFC 9110 section 13.1.2)."""
     tags = {item.strip().removeprefix("W/") for item in wanted.split(",")}
     return "*" in tags or f'"{tag}"' in tags
-
-
-def _kind(context: Mapping[str, Any]) -> str:
-    return type(context.get("exception")).__name__
-
-
-def _description(context: Mapping[str, Any]) -> str:
-    return f"{context.get('message', 'a connection failed')}: {context.get('exception')}"

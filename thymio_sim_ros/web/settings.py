@@ -36,7 +36,6 @@ class Settings:
     foxglove_port: int
     is_loopback: bool = True
     allowed_hosts: tuple[str, ...] = ()
-    max_connections: int = _MAX_CONNECTIONS
 
     def is_allowed_host(self, name: str | None) -> bool:
         """Whether a request may address the server by this name; None: the name of the request is invalid."""

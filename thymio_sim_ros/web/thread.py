@@ -1,67 +1,134 @@
-"""The page's server in its own thread."""
+"""The thread of the servers of page and bridge: its event loop, its ports, and the application behind them."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import ssl
 import threading
 import traceback
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Mapping
+from socket import socket
+from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.report_limiter import ReportLimiter
-from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.web.content import Content
-from thymio_sim_ros.web.settings import Settings
+from thymio_sim_ros.web.settings import Settings, max_connections
 
-__all__ = ["PageThread", "Settings"]
+if TYPE_CHECKING:
+    from thymio_sim_ros.bridge.server import BridgeServer
+    from thymio_sim_ros.web.application import Application
+    from thymio_sim_ros.web.http_connections import HttpConnections
+
+__all__ = ["ServerThread"]
 
 _CLOSE_TIMEOUT_S = 3.0
 """Longest time that `close` waits; the thread is a daemon."""
 
 
-class PageThread:
-    """A running server. The port is bound when the constructor returns; `port` is the actual port.
+class ServerThread:
+    """A thread with one application on any number of ports. All methods may be called in any thread."""
 
-    `warn` is called in the server's thread, at most once a minute for each kind of problem.
-    """
+    def __init__(self, *, warn: Callable[[str], object], connections: int | None = None) -> None:
+        """Start the thread; it serves nothing until something is mounted and `listen` is called.
 
-    def __init__(
-        self, content: Content, settings: Settings, *, address: str, port: int, warn: Callable[[str], object]
-    ) -> None:
-        """Start serving. Raises OSError if the address and port cannot be used."""
-        self._content = content
-        self._settings = settings
+        `warn` is called in the thread, at most once a minute for each kind of problem. `connections`: their maximum
+        number on all ports, by default as many as this process can have.
+        """
         self._warn = warn
-        self._report = ReportLimiter(lambda text: warn(f"page: {text} (not repeated for a minute)"))
-        self._listeners = listen(address, port)
-        self.port = int(self._listeners[0].getsockname()[1])
-        self._loop = asyncio.SelectorEventLoop()  # as `ServerThread`
+        self._report = ReportLimiter(lambda text: warn(f"page and bridge: {text} (not repeated for a minute)"))
+        self._max_connections = max_connections() if connections is None else connections
+        # Not the default loop of Windows: it has no `add_reader` and `add_writer`, and its socket stays the wakeup
+        # descriptor of signals when a thread other than the main thread, which made the loop, closes it.
+        self.loop = asyncio.SelectorEventLoop()
+        """The event loop of the thread."""
+        self._listeners: list[socket] = []
+        self._closers: list[Callable[[], Awaitable[None]]] = []
+        """Close what has been mounted."""
+        self._application: Application
+        self._connections: HttpConnections
         self._stop = asyncio.Event()
-        self._thread = threading.Thread(target=self._run, name="page-server", daemon=True)
         self._is_closed = False
+        self._thread = threading.Thread(target=self._run, name="web-server", daemon=True)
         self._thread.start()
 
+    def listen(self, address: str, port: int, tls: ssl.SSLContext | None = None) -> tuple[str, int]:
+        """Serve on a port; return the numeric address and the actual port. Raises OSError if it cannot be bound."""
+        listeners = listen(address, port)
+        self._listeners += listeners
+        self._call(lambda: self._connections.accept(listeners, tls))
+        found = listeners[0].getsockname()
+        return str(found[0]), int(found[1])
+
+    def mount_bridge(self, bridge: BridgeServer) -> None:
+        """Serve a bridge, whose loop must be that of the thread, to clients that ask for a WebSocket at `/`."""
+
+        def mount() -> None:
+            from thymio_sim_ros.bridge.websocket import BridgeSockets
+
+            sockets = BridgeSockets(bridge)
+            self._application.websockets["/"] = sockets.handle
+            self._closers.append(sockets.close)
+
+        self._call(mount)
+
+    def mount_page(self, content: Content, settings: Settings) -> None:
+        """Serve a page."""
+
+        def mount() -> None:
+            from thymio_sim_ros.web.server import Page
+
+            page = Page(content, settings, self._report)
+            self._application.page = page.answer
+            self._closers.append(page.close)
+
+        self._call(mount)
+
     def close(self) -> None:
-        """Stop the server and its connections; a second call has no effect."""
+        """Stop the servers, their connections and the thread; a second call has no effect."""
         if self._is_closed:
             return
         self._is_closed = True
-        with contextlib.suppress(RuntimeError):  # the loop has ended because of an error
-            self._loop.call_soon_threadsafe(self._stop.set)
+        self._call(self._stop.set)
         self._thread.join(_CLOSE_TIMEOUT_S)
+
+    def _call(self, function: Callable[[], object]) -> None:
+        with contextlib.suppress(RuntimeError):  # the loop has ended because of an error
+            self.loop.call_soon_threadsafe(function)
 
     def _run(self) -> None:
         try:
-            # Imported in this thread, so that it does not delay the start of other nodes.
-            from thymio_sim_ros.web.server import serve
+            # aiohttp is imported in this thread, so that it does not delay the start of the nodes.
+            from thymio_sim_ros.web.application import Application
+            from thymio_sim_ros.web.http_connections import HttpConnections
 
-            self._loop.run_until_complete(
-                serve(self._listeners, self._content, self._settings, self._report, self._stop)
-            )
+            self.loop.set_exception_handler(lambda _loop, context: self._report(_kind(context), _description(context)))
+            self._application = Application()
+            answer = self._application.answer
+            self._connections = HttpConnections(answer, self._max_connections, self._report, self.loop)
+            self.loop.run_until_complete(self._serve())
         except Exception:
-            self._warn(f"the page's server has ended, internal error (please report):\n{traceback.format_exc()}")
+            text = traceback.format_exc()
+            self._warn(f"the server of page and bridge has ended, internal error (please report):\n{text}")
         finally:
             for listener in self._listeners:
                 listener.close()
-            self._loop.run_until_complete(self._loop.shutdown_asyncgens())
-            self._loop.close()
+            self.loop.run_until_complete(self.loop.shutdown_asyncgens())
+            self.loop.close()
+
+    async def _serve(self) -> None:
+        await self._stop.wait()
+        for close in self._closers:
+            await close()
+        await self._connections.close()
+
+
+def _kind(context: Mapping[str, Any]) -> str:
+    return type(context.get("exception")).__name__
+
+
+def _description(context: Mapping[str, Any]) -> str:
+    error = context.get("exception")
+    text = "".join(traceback.format_exception(error)) if isinstance(error, BaseException) else ""
+    return f"{context.get('message', 'a connection failed')}, internal error (please report):\n{text}"

@@ -17,8 +17,8 @@ from aiohttp import web
 from aseba_vm.protocol.messages import Message
 from aseba_vm.protocol.node_client import NodeClient
 from thymio_sim_ros.bridge.access import TokenCheck, Tokens
+from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.protocol.constants import Role
-from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.network.http.access import AccessPolicy, check_origin, check_token, cors_headers
 from thymio_sim_ros.network.http.gateway import Gateway
 from thymio_sim_ros.network.http.programs import compile_file

@@ -1,8 +1,8 @@
 """The Foxglove bridge as a ROS node: offers any ROS graph to Foxglove Studio, Lichtblick and the web page.
 
 There are two threads: the executor's thread owns all ROS objects and runs this module, the thread of the event loop
-owns the sockets (`bridge`). Commands are passed on by `ServerThread.post`, events arrive by `Mailbox`; nothing else is
-shared. Topics, services and parameters each have a module, which follows the polled graph. Messages of topics are
+owns the clients (`bridge`). Commands are passed on by `BridgeServer.execute`, events arrive by `Mailbox`; nothing else
+is shared. Topics, services and parameters each have a module, which follows the polled graph. Messages of topics are
 forwarded in serialized form.
 """
 
@@ -25,10 +25,11 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import UInt32
 
-from thymio_sim_ros.bridge import ServerInfo, ServerSettings, ServerThread, Tokens
+from thymio_sim_ros.bridge import BridgeServer, ServerInfo, ServerSettings, Tokens
 from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 from thymio_sim_ros.bridge.protocol.messages import AssetResponse
 from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 from thymio_sim_ros.names.addresses import describe_access, describe_urls, urls
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
@@ -56,6 +57,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, a
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.peers import follow_clock
 from thymio_sim_ros.ros.web import tokens as node_tokens
+from thymio_sim_ros.web import ServerThread
 
 __all__ = ["FoxgloveBridge", "main"]
 
@@ -121,7 +123,6 @@ class FoxgloveBridge:
         except BaseException:
             self.node.destroy_node()
             raise
-        self.address, self.port = self._server.address, self._server.port
         self._sim_now_ns = 0
         self._wants_graph = False
         self._is_graph_outdated = True
@@ -162,7 +163,7 @@ class FoxgloveBridge:
     def stop(self) -> None:
         """Stop the server and its thread. The executor must not be spinning any more."""
         self._mailbox.close()
-        self._server.close()
+        self.thread.close()
 
     def close(self) -> None:
         """Stop the server, end all endpoints, and destroy the node."""
@@ -173,36 +174,38 @@ class FoxgloveBridge:
         self._publishers.close_all()
         self.node.destroy_node()
 
-    def _open_server(self) -> ServerThread:
+    def _open_server(self) -> BridgeServer:
+        """Serve on the port of the bridge, in a thread of its own."""
         values = self.params
-        capabilities = server_capabilities(values, uses_sim_time=self._uses_sim_time)
+        tls = tls_context(values)
+        self.thread = ServerThread(warn=self.node.get_logger().warning)
         try:
-            return ServerThread(
-                ServerInfo(
-                    "thymio_sim_ros",
-                    capabilities,
-                    (CDR, JSON),
-                    {"namespace": self.node.get_namespace()},
-                    session_id=_new_id(),
-                ),
-                self._mailbox,
-                address=values.address,
-                port=values.port,
-                settings=ServerSettings(
-                    allowed_origins=tuple(filter(None, values.allowed_origins)),
-                    buffer_limit=values.send_buffer_limit,
-                    max_message_size=values.max_message_size,
-                    tls=tls_context(values),
-                    tokens=self.tokens,
-                    is_read_only_service=allow_list(values.read_only_services),
-                ),
-            )
+            self.address, self.port = self.thread.listen(values.address, values.port, tls)
         except OSError as error:
+            self.thread.close()
             hint = "choose another with --foxglove-port, or -p port:=NUMBER for the node alone"
             raise StartError(f"the Foxglove bridge {error.strerror}; {hint}") from error
+        info = ServerInfo(
+            "thymio_sim_ros",
+            server_capabilities(values, uses_sim_time=self._uses_sim_time),
+            (CDR, JSON),
+            {"namespace": self.node.get_namespace()},
+            session_id=_new_id(),
+        )
+        settings = ServerSettings(
+            allowed_origins=tuple(filter(None, values.allowed_origins)),
+            buffer_limit=values.send_buffer_limit,
+            max_message_size=values.max_message_size,
+            tokens=self.tokens,
+            is_read_only_service=allow_list(values.read_only_services),
+        )
+        board = Switchboard(info, is_read_only_service=settings.is_read_only_service)
+        server = BridgeServer(board, self._mailbox, self.thread.loop, settings)
+        self.thread.mount_bridge(server)
+        return server
 
     def _build(self) -> None:
-        values, post = self.params, self._server.post
+        values, post = self.params, self._server.execute
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._is_topic = allow_list(values.topic_whitelist)
         self._is_service = allow_list(values.service_whitelist)
@@ -278,14 +281,14 @@ class FoxgloveBridge:
             return
         now_ns = self.node.get_clock().now().nanoseconds
         if now_ns < self._sim_now_ns:
-            self._server.post(ev.NewSession(_new_id()))
+            self._server.execute(ev.NewSession(_new_id()))
             self._resend_timer.reset()
         self._sim_now_ns = now_ns
-        self._server.post(ev.SetTime(now_ns))
+        self._server.execute(ev.SetTime(now_ns))
 
     def _resend_retained(self) -> None:
         self._resend_timer.cancel()
-        self._server.post(ev.ResendRetained())
+        self._server.execute(ev.ResendRetained())
 
     def _discover(self) -> None:
         """Poll the graph and pass changes on."""
@@ -330,7 +333,7 @@ class FoxgloveBridge:
         if self._graph_share.is_due:
             self._is_graph_outdated = False
             with self._graph_share.work():
-                self._server.post(ev.SetGraph(connection_graph(self.node, *self._shown)))
+                self._server.execute(ev.SetGraph(connection_graph(self.node, *self._shown)))
 
     def _poll_soon(self) -> None:
         """Start polling. A timer that is reset repeatedly would never fire; therefore a running one is left alone."""
@@ -354,7 +357,7 @@ class FoxgloveBridge:
             if isinstance(event, ev.ServiceCalled):
                 self._services.fail(event.client, event.request, "internal error (please report), see the log")
             elif isinstance(event, (ev.ParametersSet, ev.ParametersRequested)):
-                self._server.post(ev.SendParameters(event.client, (), event.request_id, ev.size_of(event)))
+                self._server.execute(ev.SendParameters(event.client, (), event.request_id, ev.size_of(event)))
 
     def _handle(self, event: ev.Event) -> None:
         match event:
@@ -396,7 +399,7 @@ class FoxgloveBridge:
             answer = AssetResponse(event.request_id, load_asset(event.uri, self.params.asset_uri_allowlist))
         except AssetError as error:
             answer = AssetResponse(event.request_id, b"", str(error))
-        self._server.post(ev.SendToClient(event.client, answer))
+        self._server.execute(ev.SendToClient(event.client, answer))
 
 
 def _sender(event: ev.Event) -> int:

@@ -27,8 +27,7 @@ from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
 from thymio_sim_ros.ros.web import tokens as node_tokens
 from thymio_sim_ros.suite_config import ADDRESS
-from thymio_sim_ros.web import Content, PageThread, Settings
-from thymio_sim_ros.web.settings import max_connections
+from thymio_sim_ros.web import Content, ServerThread, Settings
 
 
 @dataclass(frozen=True)
@@ -65,16 +64,20 @@ class WebPage:
                 self.node, "ros2-tools.md", lambda name: self.node.has_parameter(name) or name in node_tokens.PARAMETERS
             )
             self.tokens = node_tokens.given_tokens(self.node) if tokens is None else tokens
-            self._server = self._open_server()
+            if importlib.util.find_spec("aiohttp") is None:
+                raise StartError("the page needs aiohttp: pip install aiohttp, or the system's python3-aiohttp")
+            self._thread = ServerThread(warn=self.node.get_logger().warning)
+            try:
+                self._serve()
+            except BaseException:
+                self._thread.close()
+                raise
         except BaseException:
             self.node.destroy_node()
             raise
-        self.port = self._server.port
 
-    def _open_server(self) -> PageThread:
+    def _serve(self) -> None:
         values = self.params
-        if importlib.util.find_spec("aiohttp") is None:
-            raise StartError("the page needs aiohttp: pip install aiohttp, or the system's python3-aiohttp")
         page = resources.page()
         if page is None:
             self.node.get_logger().warning(resources.PAGE_BUILD_HINT)
@@ -83,22 +86,16 @@ class WebPage:
             values.foxglove_port,
             is_loopback=is_loopback(values.address),
             allowed_hosts=tuple(name.lower() for name in values.allowed_hosts if name),
-            max_connections=max_connections(),
         )
         try:
-            return PageThread(
-                Content(page, json.dumps(config).encode()),
-                settings,
-                address=values.address,
-                port=values.port,
-                warn=self.node.get_logger().warning,
-            )
+            self.port = self._thread.listen(values.address, values.port)[1]
         except OSError as error:
             where = f"{values.address}:{values.port}"
             raise StartError(
                 f"the page's port {where} cannot be used: {error.strerror}; "
                 "choose another with --port, or port:=NUMBER of ros2"
             ) from error
+        self._thread.mount_page(Content(page, json.dumps(config).encode()), settings)
 
     @property
     def startup_message(self) -> str:
@@ -120,7 +117,7 @@ class WebPage:
 
     def stop(self) -> None:
         """Stop the server and its thread."""
-        self._server.close()
+        self._thread.close()
 
     def close(self) -> None:
         """Stop the server and destroy the node."""

@@ -1,8 +1,7 @@
-"""The server in its own thread."""
+"""The thread of page and bridge: what other threads publish reaches clients of the bridge."""
 
 from __future__ import annotations
 
-import errno
 import socket
 import ssl
 import subprocess
@@ -10,7 +9,6 @@ import sys
 import threading
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -18,12 +16,13 @@ from websockets.sync.client import connect
 
 from tests.bridge.certificates import make_certificate, trusting
 from tests.patience import PATIENCE_S
-from thymio_sim_ros.bridge import SUBPROTOCOLS, ServerInfo, ServerSettings, ServerThread
+from thymio_sim_ros.bridge import SUBPROTOCOLS, BridgeServer, ServerInfo
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import StatusLevel
-from thymio_sim_ros.bridge.server_thread import listen
 from thymio_sim_ros.bridge.switchboard import events as ev
+from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
+from thymio_sim_ros.web import ServerThread
 
 pytestmark = pytest.mark.process
 
@@ -49,9 +48,24 @@ class Sink:
 HAS_IPV6 = socket.has_ipv6 and Path("/proc/net/if_inet6").exists()
 
 
-def start(port: int = 0) -> tuple[ServerThread, Sink]:
+class Served:
+    """A bridge in a thread; `publish` and `execute` are those of the bridge."""
+
+    def __init__(self, sink: Sink, port: int = 0, tls: ssl.SSLContext | None = None) -> None:
+        self.thread = ServerThread(warn=print)
+        try:
+            self.port = self.thread.listen("localhost", port, tls)[1]
+        except OSError:
+            self.thread.close()
+            raise
+        bridge = BridgeServer(Switchboard(ServerInfo("test", ())), sink, self.thread.loop)
+        self.thread.mount_bridge(bridge)
+        self.bridge, self.publish, self.post, self.close = bridge, bridge.publish, bridge.execute, self.thread.close
+
+
+def start(port: int = 0) -> tuple[Served, Sink]:
     sink = Sink()
-    return ServerThread(ServerInfo("test", ()), sink, port=port), sink
+    return Served(sink, port), sink
 
 
 def test_the_port_is_bound_when_the_constructor_returns_and_free_after_close() -> None:
@@ -64,54 +78,12 @@ def test_the_port_is_bound_when_the_constructor_returns_and_free_after_close() -
 
 
 @pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
-def test_localhost_is_both_loopbacks_on_one_port() -> None:
-    listeners = listen("localhost", 0)
-    port = listeners[0].getsockname()[1]
-    assert [listener.getsockname()[:2] for listener in listeners] == [("127.0.0.1", port), ("::1", port)]
-    for listener in listeners:
-        listener.close()
-
-
-@pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
-def test_a_port_taken_on_one_loopback_is_rejected_and_the_other_given_back() -> None:
-    with socket.create_server(("::1", 0), family=socket.AF_INET6) as taken:
-        port = taken.getsockname()[1]
-        with pytest.raises(OSError, match=rf"cannot listen on \[::1\]:{port}: address already in use"):
-            listen("localhost", port)
-    for listener in listen("localhost", port):
-        listener.close()
-
-
-def test_without_ipv6_the_other_loopback_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Socket(socket.socket):
-        def bind(self, address: Any) -> None:
-            if self.family == socket.AF_INET6:
-                raise OSError(errno.EADDRNOTAVAIL, "cannot assign")
-            super().bind(address)
-
-    monkeypatch.setattr(socket, "socket", Socket)
-    (listener,) = listen("localhost", 0)
-    listener.close()
-
-
-@pytest.mark.skipif(not HAS_IPV6, reason="no IPv6 here")
 def test_a_client_may_connect_by_ipv6() -> None:
     server, _ = start()
     with connect(f"ws://[::1]:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         assert isinstance(wire.decode_server(client.recv(timeout=PATIENCE_S)), ms.ServerInfo)
-        assert server.client_count == 1
+        assert server.bridge.client_count == 1
     server.close()
-
-
-def test_an_address_of_another_machine_is_rejected_by_name() -> None:
-    with pytest.raises(OSError, match=r"cannot listen on 192\.0\.2\.1:8765"):
-        listen("192.0.2.1", 8765)
-
-
-def test_answers_are_not_held_back_by_nagles_algorithm() -> None:
-    (listener,) = listen("127.0.0.1", 0)
-    with listener:
-        assert listener.proto == socket.IPPROTO_TCP  # what asyncio asks for before it sets TCP_NODELAY
 
 
 def test_commands_of_another_thread_arrive_in_order() -> None:
@@ -152,7 +124,7 @@ def test_data_and_other_commands_do_not_overtake_each_other() -> None:
     server.close()
 
 
-def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
+def test_a_thread_that_publishes_does_not_wait_for_a_busy_event_loop() -> None:
     class Busy(Sink):
         def __init__(self) -> None:
             super().__init__()
@@ -163,18 +135,18 @@ def test_commands_do_not_wait_for_a_busy_event_loop() -> None:
             assert self.may_go_on.wait(PATIENCE_S)
 
     sink = Busy()
-    server = ServerThread(ServerInfo("test", ()), sink, port=0)
+    server = Served(sink)
     server.post(ev.AddChannels((CHANNEL,)))
     with connect(f"ws://127.0.0.1:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
         assert sink.subscribed.wait(PATIENCE_S)
         server.publish(1, 7, b"x")
         server.post(ev.SendToClient(1, ms.Status(StatusLevel.INFO, "sent")))
+        sink.may_go_on.set()
         while not isinstance(message := wire.decode_server(client.recv(timeout=PATIENCE_S)), ms.MessageData):
             pass
         assert message.time_ns == 7
         assert wire.decode_server(client.recv(timeout=PATIENCE_S)) == ms.Status(StatusLevel.INFO, "sent")
-        sink.may_go_on.set()
     server.close()
 
 
@@ -183,7 +155,7 @@ def test_data_of_another_thread_arrives_with_tls(tmp_path: Path) -> None:
     tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     tls.load_cert_chain(cert, key)
     sink = Sink()
-    server = ServerThread(ServerInfo("test", ()), sink, port=0, settings=ServerSettings(tls=tls))
+    server = Served(sink, tls=tls)
     server.post(ev.AddChannels((CHANNEL,)))
     with connect(f"wss://localhost:{server.port}", subprotocols=SUBPROTOCOLS, ssl=trusting(cert)) as client:
         client.send(wire.encode_client(ms.Subscribe((ms.Subscription(1, 1),))))
@@ -299,17 +271,3 @@ def test_closing_twice_and_posting_afterwards_do_nothing() -> None:
     server.close()
     server.close()
     server.post(ev.AddChannels((CHANNEL,)))
-
-
-def test_connections_of_a_listening_socket_notice_that_their_peer_has_vanished() -> None:
-    for listener in listen("localhost", 0):
-        with listener, socket.create_connection(listener.getsockname()[:2]):
-            connection, _ = listener.accept()
-            with connection:
-                assert connection.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE) == 1
-                idle_s, period_s, probes = (
-                    connection.getsockopt(socket.IPPROTO_TCP, option)
-                    for option in (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
-                )
-                assert idle_s + period_s * probes <= 60
-                assert 0 < connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) <= 60_000

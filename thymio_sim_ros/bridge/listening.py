@@ -1,20 +1,15 @@
-"""The server in its own thread with an event loop, and its listening sockets."""
+"""Listening sockets of all servers."""
 
 from __future__ import annotations
 
-import asyncio
 import errno
 import socket
-import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
-from thymio_sim_ros.bridge.protocol.messages import ServerInfo
-from thymio_sim_ros.bridge.server import BACKLOG, BridgeServer
-from thymio_sim_ros.bridge.settings import EventSink, ServerSettings
-from thymio_sim_ros.bridge.switchboard.events import Command
-from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
+__all__ = ["check_free", "detect_lost_peer", "listen"]
 
-__all__ = ["ServerThread", "check_free", "detect_lost_peer", "listen"]
+_BACKLOG = 128
+"""Connections that the kernel queues until they are accepted."""
 
 _LOOPBACK = ("127.0.0.1", "::1")
 """Addresses of `localhost`: a browser may try either first."""
@@ -101,7 +96,7 @@ def _bound(address: str, port: int, *, do_listen: bool) -> socket.socket:
         bound.bind(endpoint)
         if do_listen:
             detect_lost_peer(bound)
-            bound.listen(BACKLOG)
+            bound.listen(_BACKLOG)
     except OSError as error:
         bound.close()
         raise _named(error, address, port) from error
@@ -111,68 +106,3 @@ def _bound(address: str, port: int, *, do_listen: bool) -> socket.socket:
 def _named(error: OSError, address: str, port: int) -> OSError:
     where = f"[{address}]" if ":" in address else address
     return OSError(error.errno, f"cannot listen on {where}:{port}: {(error.strerror or str(error)).lower()}")
-
-
-class ServerThread:
-    """A running server. The port is bound when the constructor returns; `close` releases it.
-
-    The calling thread of `publish` and `post` writes to the sockets itself.
-    """
-
-    def __init__(
-        self,
-        info: ServerInfo,
-        sink: EventSink,
-        *,
-        address: str = "localhost",
-        port: int = 8765,
-        settings: ServerSettings | None = None,
-    ) -> None:
-        """Start serving on `address` and `port` (0: a free one). Raises OSError if it cannot be bound."""
-        self._listeners = listen(address, port)
-        settings = settings or ServerSettings()
-        board = Switchboard(info, is_read_only_service=settings.is_read_only_service)
-        self._server = BridgeServer(board, sink, settings)
-        self.publish: Callable[[int, int, bytes], None] = self._server.publish
-        """Send a message of a channel to its subscribers: channel ID, time in ns, payload; from any thread."""
-        self.send = self._server.send
-        """Send messages to a rosbridge client; from any thread."""
-        # Not the default loop of Windows: it has no `add_reader` and `add_writer`, and its socket stays the wakeup
-        # descriptor of signals when a thread other than the main thread, which made the loop, closes it.
-        self._loop = asyncio.SelectorEventLoop()
-        self._stop = asyncio.Event()
-        self._thread = threading.Thread(target=self._run, name="foxglove-server", daemon=True)
-        self._is_closed = False
-        self.address: str
-        self.port: int
-        self.address, self.port = self._listeners[0].getsockname()[:2]
-        self._thread.start()
-
-    @property
-    def client_count(self) -> int:
-        """Connected clients; from any thread."""
-        return self._server.client_count
-
-    def post(self, command: Command) -> None:
-        """Execute a command; from any thread."""
-        self._server.execute(command)
-
-    def close(self) -> None:
-        """Stop the server, its connections and the thread."""
-        if self._is_closed:
-            return
-        self._is_closed = True
-        self._loop.call_soon_threadsafe(self._stop.set)
-        self._thread.join()
-
-    def _run(self) -> None:
-        try:
-            self._loop.run_until_complete(self._serve())
-        finally:
-            self._loop.run_until_complete(self._loop.shutdown_asyncgens())
-            self._loop.close()
-
-    async def _serve(self) -> None:
-        await self._server.start(self._listeners)
-        await self._stop.wait()
-        await self._server.close()
