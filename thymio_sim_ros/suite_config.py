@@ -32,6 +32,7 @@ class SuiteConfig:
         behaviour: built-in behavior after switching on, from whose menu the program can be started; empty for none.
         robot: address of a real robot, in place of the simulator; empty for none.
         address: address on which page and bridge listen, `ADDRESS` or an IPv4 address.
+        foxglove_port: port of the bridge; `OFF`: none beside that of the page, which serves it as well.
         log: file of a run log, empty for none.
         replay: run log whose last run is shown in place of a playground, empty for none.
         replay_from_s: time at which it is paused at first; negative: before its end.

@@ -14,6 +14,7 @@ import segno
 from thymio_sim_ros.bridge import Tokens
 from thymio_sim_ros.cli import banner
 from thymio_sim_ros.names import addresses
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.suite_config import SuiteConfig
 
 
@@ -36,6 +37,13 @@ def test_for_the_whole_network(monkeypatch):
     text = banner.banner(SuiteConfig(address="0.0.0.0", port=80, foxglove_port=81), ["thymio"]).splitlines()
     assert text[0] == "Page      http://localhost:80/, from other computers http://10.1.2.3:80/"
     assert text[1] == "Foxglove  ws://localhost:81, from other computers ws://10.1.2.3:81"
+
+
+@pytest.mark.process
+def test_a_bridge_without_a_port_of_its_own_has_that_of_the_page():
+    text = banner.banner(SuiteConfig(foxglove_port=OFF, tokens=TOKENS), ["thymio"])
+    assert f"Foxglove  ws://localhost:8080/?token={TOKENS.full}" in text
+    assert f"Read only ws://localhost:8080/?token={TOKENS.read_only}" in text
 
 
 @pytest.mark.process

@@ -67,6 +67,11 @@ def test_a_broken_playground_is_located(capsys, tmp_path):
     assert "expected" in line
 
 
+def test_a_bridge_without_a_port_of_its_own_needs_the_page(capsys):
+    line = refused(capsys, "--no-foxglove-port", "--no-web")
+    assert "--no-foxglove-port: found --no-web, expected the port of the page" in line
+
+
 @pytest.mark.process
 @pytest.mark.parametrize(
     ("option", "whose", "others"), [("--port", "page", []), ("--foxglove-port", "Foxglove", ["--no-web"])]

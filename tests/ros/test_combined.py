@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import urllib.request
 
 import pytest
@@ -15,7 +16,10 @@ from tests.processes import free_port
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Tokens
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
 from thymio_sim_ros.device.options import DeviceOptions
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.ros import combined
+from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
+from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.suite_config import SuiteConfig
 
 
@@ -70,6 +74,27 @@ def test_a_page_opened_from_elsewhere_reaches_the_bridge_if_its_origin_is_allowe
                 urllib.request.urlopen(f"http://{host}:{page.port}/config.json", timeout=PATIENCE_S)
             with pytest.raises(ConnectionRefusedError), connect(f"ws://{host}:{bridge.port}", **opening):
                 pass
+
+
+@pytest.mark.parametrize("has_port", [True, False])
+def test_the_bridge_is_on_the_port_of_the_page_and_on_its_own_if_it_has_one(ros, has_port):
+    suite = SuiteConfig(playground="base", program="none", port=0, foxglove_port=free_port() if has_port else OFF)
+    _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    with urllib.request.urlopen(f"http://localhost:{page.port}/config.json", timeout=PATIENCE_S) as config:
+        assert "foxglove_port" not in json.load(config)
+    for port in (page.port, bridge.port) if has_port else (page.port,):
+        with connect(f"ws://localhost:{port}", subprotocols=SUBPROTOCOLS) as connection:
+            assert connection.subprotocol == SUBPROTOCOLS[0]
+        with connect(f"ws://localhost:{port}") as connection:
+            assert connection.subprotocol is None
+    with pytest.raises(InvalidStatus, match="404"), connect(f"ws://localhost:{page.port}/elsewhere"):
+        pass
+    assert bridge.port == suite.foxglove_port
+
+
+def test_a_bridge_without_a_port_needs_a_page(ros):
+    with pytest.raises(StartError, match="expected a port, because no page"):
+        FoxgloveBridge(context=ros.context, port=OFF)
 
 
 def test_in_the_network_the_bridge_creates_tokens_that_the_page_gets(ros, monkeypatch):

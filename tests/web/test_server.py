@@ -41,7 +41,7 @@ def serve(folder, warnings):
         def start(address="localhost", max_connections=768, **settings):
             server = ServerThread(warn=warnings.append, connections=max_connections)
             stack.callback(server.close)
-            server.mount_page(Content(folder, b'{"foxglove_port": 1234}'), Settings(1234, **settings))
+            server.mount_page(Content(folder, b"{}"), Settings(**settings))
             return server.listen(address, 0)[1]
 
         yield start
@@ -97,7 +97,17 @@ def test_every_answer_protects_the_page_and_hides_the_server(serve):
         assert response.headers["Server"] == "thymio-sim"
     policy = ask(port, "/")[0].headers["Content-Security-Policy"]
     assert "frame-ancestors 'self'" in policy
+    assert f"connect-src 'self' ws://127.0.0.1:{port} wss://127.0.0.1:{port};" in policy
+
+
+def test_a_page_whose_bridge_has_another_port_may_connect_to_it(serve):
+    policy = ask(serve(foxglove_port=1234), "/")[0].headers["Content-Security-Policy"]
     assert "connect-src 'self' ws://127.0.0.1:1234 wss://127.0.0.1:1234;" in policy
+
+
+def test_a_page_behind_a_proxy_may_connect_to_the_address_of_the_proxy(serve):
+    policy = ask(serve(is_loopback=False), "/", Host="school.example")[0].headers["Content-Security-Policy"]
+    assert "connect-src 'self' ws://school.example wss://school.example;" in policy
 
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS", "TRACE"])
@@ -281,5 +291,5 @@ def test_closing_before_the_server_has_started_leaves_nothing_behind(folder):
 def page_server(folder, port=0):
     """A server and its port."""
     server = ServerThread(warn=print)
-    server.mount_page(Content(folder, b"{}"), Settings(1))
+    server.mount_page(Content(folder, b"{}"), Settings())
     return server, server.listen("localhost", port)[1]

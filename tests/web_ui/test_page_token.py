@@ -7,7 +7,7 @@ import pytest
 from tests.processes import wait_for_port
 from tests.web_ui.page_support import MARKS, open_page, open_tab
 from thymio_sim_ros.files import resources
-from thymio_sim_ros.web import Content, PageThread, Settings
+from thymio_sim_ros.web import Content, ServerThread, Settings
 
 pytestmark = MARKS
 
@@ -71,8 +71,9 @@ def test_with_the_read_only_token_the_page_only_watches(suite, page):
 def page_server():
     """The server of the built page, without a simulator."""
     folder = resources.page()
-    server = PageThread(Content(folder, b'{"foxglove_port": 1}'), Settings(1), address="localhost", port=0, warn=print)
-    yield server
+    server = ServerThread(warn=print)
+    server.mount_page(Content(folder, b"{}"), Settings())
+    yield server.listen("localhost", 0)[1]
     server.close()
 
 
@@ -83,7 +84,7 @@ def test_nothing_violates_the_content_security_policy(browser, page_server, host
     page.add_init_script(
         "window.broken = []; addEventListener('securitypolicyviolation', (e) => broken.push(e.blockedURI))"
     )
-    page.goto(f"http://{host}:{page_server.port}/")
+    page.goto(f"http://{host}:{page_server}/")
     page.locator("#connection[data-state=lost]").wait_for()  # the socket was tried; a predicate would need eval
     page.locator("#tab-program").click()
     page.locator(".cm-editor").wait_for()
@@ -101,7 +102,7 @@ def test_nothing_violates_the_content_security_policy(browser, page_server, host
 @pytest.mark.slow
 def test_the_page_cannot_be_embedded(browser, page_server):
     page = browser.new_page()
-    page.goto(f"data:text/html,<iframe src='http://127.0.0.1:{page_server.port}/'></iframe>")
+    page.goto(f"data:text/html,<iframe src='http://127.0.0.1:{page_server}/'></iframe>")
     (frame,) = page.main_frame.child_frames
     assert frame.url.startswith("chrome-error:")
     page.close()

@@ -9,6 +9,7 @@ from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli import foxglove_layout
 from thymio_sim_ros.names.addresses import describe_access, describe_urls, loopback_problem, urls
 from thymio_sim_ros.network.robot_target import parse_target
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["banner", "qr_code", "startup_notice"]
@@ -27,7 +28,7 @@ def banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str] = (
     tokens = suite.tokens or Tokens()
     page = describe_urls("http", suite.address, suite.port, "/", tokens.full) if suite.web else _NONE
     path = "/" if tokens.full else ""
-    foxglove = describe_urls("ws", suite.address, suite.foxglove_port, path, tokens.full) if suite.foxglove else _NONE
+    foxglove = describe_urls("ws", suite.address, _bridge_port(suite), path, tokens.full) if suite.foxglove else _NONE
     lines = [f"Page      {page}", f"Foxglove  {foxglove}"]
     if suite.foxglove:
         lines += [f"Read only {url}" for url in _read_only_urls(suite, tokens)]
@@ -68,4 +69,8 @@ def _read_only_urls(suite: SuiteConfig, tokens: Tokens) -> list[str]:
     if not tokens.read_only:
         return []
     page = urls("http", suite.address, suite.port, "/", tokens.read_only)[-1:] if suite.web else []
-    return [*page, urls("ws", suite.address, suite.foxglove_port, "/", tokens.read_only)[-1]]
+    return [*page, urls("ws", suite.address, _bridge_port(suite), "/", tokens.read_only)[-1]]
+
+
+def _bridge_port(suite: SuiteConfig) -> int:
+    return suite.port if suite.foxglove_port == OFF else suite.foxglove_port

@@ -64,7 +64,7 @@ def run(argv: Sequence[str]) -> int:
     robots = _check_robots(suite)
     if suite.web:
         _check_port(suite.address, suite.port, "the page", "--port")
-    if suite.foxglove:
+    if suite.foxglove and suite.foxglove_port != OFF:
         _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
     chosen = select_servers(options, len(robots), suite.tokens or Tokens())
     servers = _without_port_of_robot(chosen, options, suite.robot)
@@ -132,6 +132,8 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         raise UsageError(f"--robot: found {excluded}; a real robot has no simulator, expected none of its options")
     if options.replay is not None and (excluded := _chosen(options, (*_OF_WORLD, "program"))):
         raise UsageError(f"--replay: found {excluded}; these come from the run log, expected none of them")
+    if options.no_foxglove_port and options.no_web:
+        raise UsageError("--no-foxglove-port: found --no-web, expected the port of the page for the bridge")
     has_none = options.robot or options.replay is not None
     return SuiteConfig(
         playground=options.playground,
@@ -144,7 +146,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         robot=options.robot,
         address=options.address,
         port=options.port,
-        foxglove_port=options.foxglove_port,
+        foxglove_port=OFF if options.no_foxglove_port else options.foxglove_port,
         web=not (options.no_web or options.headless),
         foxglove=not options.headless,
         seed=options.seed,
@@ -252,8 +254,9 @@ def _add_network_options(parser: argparse.ArgumentParser) -> None:
         "--foxglove-port",
         type=port_argument,
         default=SuiteConfig.foxglove_port,
-        help="port of the bridge (default: %(default)s)",
+        help="port of the bridge, as Foxglove expects it (default: %(default)s); the bridge is on the page's port, too",
     )
+    parser.add_argument("--no-foxglove-port", action="store_true", help="bridge and page on the page's port only")
     add_server_options(parser)
     parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
     parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")

@@ -11,7 +11,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
-from dataclasses import replace
 
 import rclpy
 from rclpy.context import Context
@@ -32,6 +31,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import (
 from thymio_sim_ros.ros.rclpy_ext.peers import PeerContext
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.suite_config import SuiteConfig
+from thymio_sim_ros.web.thread import ServerThread
 
 REFUSED = 2
 """Exit code for invalid arguments."""
@@ -70,7 +70,8 @@ def suite_nodes(
     cannot start.
     """
     given = defaults(suite)
-    foxglove_port, tokens = suite.foxglove_port, suite.tokens
+    tokens = suite.tokens
+    bridge_thread: ServerThread | None = None
     is_simulated = not suite.robot
     if is_simulated:
         simulator = Simulator(context, given[SIMULATOR])
@@ -94,13 +95,14 @@ def suite_nodes(
             use_sim_time=is_simulated,
             tokens=tokens,
             peers=None if peers is None else peers.of_bridge(),
+            has_page=suite.web,
         )
         yield bridge
-        foxglove_port, tokens = bridge.port, bridge.tokens
+        bridge_thread, tokens = bridge.thread, bridge.tokens
     if suite.web:
         from thymio_sim_ros.ros.web.node import WebPage
 
-        yield WebPage(context, replace(given[PAGE], foxglove_port=foxglove_port), tokens)
+        yield WebPage(context, given[PAGE], tokens, bridge_thread)
 
 
 def _log(node: Node, warnings: Sequence[str]) -> None:

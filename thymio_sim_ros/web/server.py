@@ -100,10 +100,12 @@ def _response(status: int, body: bytes, media_type: str, headers: Mapping[str, s
 
 
 def _policy(host: str, foxglove_port: int) -> str:
-    """The Content-Security-Policy: the page may load from this server and connect to the bridge on the same host."""
+    """The Content-Security-Policy: the page may load from this server and connect to it and the bridge on its host."""
     name = host_name(host)
-    # A policy cannot contain an IPv6 address.
-    bridge = f"ws://{name}:{foxglove_port} wss://{name}:{foxglove_port}" if name and ":" not in name else "ws: wss:"
+    port = host.rpartition(":")[2] if foxglove_port < 0 else str(foxglove_port)
+    place = f"{name}:{port}" if port.isdecimal() else name
+    # Safari did not count WebSockets as 'self' until version 15.4. A policy cannot contain an IPv6 address.
+    bridge = f"ws://{place} wss://{place}" if name and ":" not in name else "ws: wss:"
     return (
         f"default-src 'self'; script-src 'self'; connect-src 'self' {bridge}; img-src 'self' data: blob:; "
         "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; form-action 'none'; "

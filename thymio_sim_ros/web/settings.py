@@ -28,12 +28,12 @@ def max_connections() -> int:
 class Settings:
     """Limits of the page's server.
 
-    `foxglove_port` is the port of the bridge on the same host. `is_loopback` is true if the server listens for this
-    computer only; requests must then address it by a name of loopback or one of `allowed_hosts`, so that a foreign page
-    whose name resolves to this computer (DNS rebinding) cannot read anything.
+    `foxglove_port` is the port of the bridge on the same host; negative: that of the page. `is_loopback` is true if the
+    server listens for this computer only; requests must then address it by a name of loopback or one of
+    `allowed_hosts`, so that a foreign page whose name resolves to this computer (DNS rebinding) cannot read anything.
     """
 
-    foxglove_port: int
+    foxglove_port: int = -1
     is_loopback: bool = True
     allowed_hosts: tuple[str, ...] = ()
 

@@ -1,10 +1,19 @@
 // Finds the WebSocket server that this page talks to.
 
-const DEFAULT_PORT = 8765;
-
-/** The address of the bridge: the port comes from the page's server, the host from the page's address. */
+/** The address of the bridge: that of the page, with its path, or another port of its host that the page's server names. */
 export async function bridgeAddress() {
   const answer = await fetch("config.json").catch(() => null);
   const config = answer?.ok ? await answer.json().catch(() => ({})) : {};
-  return `ws://${location.hostname || "localhost"}:${config.foxglove_port ?? DEFAULT_PORT}`;
+  return addressBeside(location.href, config.foxglove_port);
+}
+
+/**
+ * @param {string} page   the URL of the page
+ * @param {number | undefined} port   the port of a bridge that is not on the page's own
+ */
+export function addressBeside(page, port) {
+  const address = new URL(port === undefined ? "." : "/", page);
+  address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
+  if (port !== undefined) address.port = String(port);
+  return address.href;
 }

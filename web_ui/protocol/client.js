@@ -39,7 +39,7 @@ export class Client {
   /** Connect, and keep connecting for as long as the page is open. */
   start() {
     this.emit({ type: "connecting", address: this.address });
-    const query = this.token === "" ? "" : `/?token=${encodeURIComponent(this.token)}`;
+    const query = this.token === "" ? "" : `?token=${encodeURIComponent(this.token)}`;
     const socket = new WebSocket(this.address + query, SUBPROTOCOLS);
     socket.binaryType = "arraybuffer";
     socket.addEventListener("open", () => {

@@ -31,6 +31,7 @@ from thymio_sim_ros.bridge.protocol.messages import AssetResponse
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
 from thymio_sim_ros.names.addresses import describe_access, describe_urls, urls
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
 from thymio_sim_ros.ros.foxglove.graph import (
@@ -74,7 +75,7 @@ _FAST_POLL_PERIOD_S = 0.02
 
 
 class FoxgloveBridge:
-    """The node and its server, which listens when the constructor returns; `port` is then the actual port.
+    """The node and its server, which listens when the constructor returns; `port` is then the actual port, or `OFF`.
 
     Belongs to the thread that spins the node's executor.
     """
@@ -89,12 +90,14 @@ class FoxgloveBridge:
         defaults: FoxgloveParams | None = None,
         tokens: Tokens | None = None,
         peers: tuple[Node, Node] | None = None,
+        has_page: bool = False,
     ) -> None:
         """Start the server. Raises StartError for invalid parameters or if the port cannot be used.
 
         `tokens` are those of the command line; None: tokens from the environment and parameters, or new ones if the
         address is reachable from the network. `peers` subscribe and publish for clients, where the endpoints of
-        `context` do not match each other; None: the bridge's node does. The other arguments override parameters.
+        `context` do not match each other; None: the bridge's node does. `has_page`: whether a page serves the bridge on
+        its port, so that it needs none of its own. The other arguments override parameters.
         """
         overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
         self.node = parameter_node("foxglove_bridge", context=context, parameter_overrides=overrides)
@@ -111,6 +114,8 @@ class FoxgloveBridge:
             )
             self.params = parameters.declare(self.node, values)
             check(self.params)
+            if self.params.port == OFF and not has_page:
+                raise StartError("parameter port: found -1, expected a port, because no page serves the bridge")
             parameters.warn_of_unknown(
                 self.node, "foxglove.md", lambda name: self.node.has_parameter(name) or name in node_tokens.PARAMETERS
             )
@@ -132,6 +137,8 @@ class FoxgloveBridge:
     def startup_message(self) -> str:
         """Addresses for clients, as text for the log."""
         place = self._scheme, self.address, self.port
+        if self.port == OFF:
+            return f"Foxglove: on the port of the page; access: {describe_access(self.address, self.tokens)}"
         is_open = not self.tokens.is_required
         how = f"or {_app_link(urls(*place)[0])}" if is_open else "with the token on standard output"
         return f"Foxglove: {describe_urls(*place)} {how}; access: {describe_access(self.address, self.tokens)}"
@@ -139,7 +146,7 @@ class FoxgloveBridge:
     @property
     def access_urls(self) -> str:
         """Addresses with their tokens, for standard output; not for the log, which clients can read."""
-        if not self.tokens.is_required:
+        if not self.tokens.is_required or self.port == OFF:
             return ""
         place = self._scheme, self.address, self.port
         full = urls(*place, "/", self.tokens.full)
@@ -179,8 +186,11 @@ class FoxgloveBridge:
         values = self.params
         tls = tls_context(values)
         self.thread = ServerThread(warn=self.node.get_logger().warning)
+        """The thread of the server, which may serve a page as well."""
+        self.address, self.port = values.address, OFF
         try:
-            self.address, self.port = self.thread.listen(values.address, values.port, tls)
+            if values.port != OFF:
+                self.address, self.port = self.thread.listen(values.address, values.port, tls)
         except OSError as error:
             self.thread.close()
             hint = "choose another with --foxglove-port, or -p port:=NUMBER for the node alone"

@@ -7,6 +7,7 @@ import ssl
 from dataclasses import dataclass, fields
 
 from thymio_sim_ros.bridge import Capability
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.ros.foxglove.assets import ASSETS
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
@@ -26,7 +27,13 @@ READ_ONLY_SERVICES = (
 class FoxgloveParams:
     """Parameters of the bridge; names as in the vendor's bridge if it has the same parameter."""
 
-    port: int = param(8765, "TCP port; 0 selects a free one", low=0, high=65535, fixed=True)
+    port: int = param(
+        8765,
+        "TCP port; 0 selects a free one, -1 none beside that of a page in the same process",
+        low=OFF,
+        high=65535,
+        fixed=True,
+    )
     address: str = param(
         "localhost",
         "Address to listen on: localhost (this computer), 0.0.0.0 (all IPv4 interfaces), :: (also IPv6)",

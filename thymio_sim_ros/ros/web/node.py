@@ -1,8 +1,9 @@
-"""The web page as a ROS node: parameters, and an HTTP server in its own thread (`thymio_sim_ros.web`).
+"""The web page as a ROS node: parameters, and an HTTP server in its own thread or in that of the bridge (`web`).
 
-The page communicates with the bridge by the Foxglove protocol. The server only serves files, read-only: those of the
-page, the shipped playgrounds as `/playgrounds/NAME.json`, and `/config.json` with the port of the bridge. It listens on
-loopback by default. None of the files is secret, therefore it needs no tokens (SECURITY.md).
+The page communicates with the bridge by the Foxglove protocol: on its own port if both are in one process, otherwise on
+the port of the bridge, which is in `/config.json`. Beside that the server only serves files, read-only: those of the
+page and the shipped playgrounds as `/playgrounds/NAME.json`. It listens on loopback by default. None of the files is
+secret, therefore it needs no tokens (SECURITY.md).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT
+from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
@@ -37,7 +39,11 @@ class WebParams:
     port: int = param(HTTP_PORT, "TCP port of the page; 0 selects a free one", low=0, high=65535, fixed=True)
     address: str = param(ADDRESS, "Address to listen on; 0.0.0.0 for all IPv4 interfaces", fixed=True)
     foxglove_port: int = param(
-        FOXGLOVE_PORT, "Port of the Foxglove bridge on the same host", low=1, high=65535, fixed=True
+        FOXGLOVE_PORT,
+        "Port of the Foxglove bridge on the same host, for a page in a process of its own; -1: that of the page",
+        low=OFF,
+        high=65535,
+        fixed=True,
     )
     allowed_hosts: list[str] = param(
         [""], "Additional host names under which a page on loopback may be opened", fixed=True
@@ -52,10 +58,17 @@ class WebParams:
 class WebPage:
     """The web node and its HTTP server; `port` is the actual port."""
 
-    def __init__(self, context: Context, defaults: WebParams | None = None, tokens: Tokens | None = None) -> None:
+    def __init__(
+        self,
+        context: Context,
+        defaults: WebParams | None = None,
+        tokens: Tokens | None = None,
+        bridge: ServerThread | None = None,
+    ) -> None:
         """Start the server. Raises StartError if aiohttp is missing or the port cannot be used.
 
         `tokens` of the bridge are part of the printed address; None: those of the environment or of parameters.
+        `bridge`: the thread of a bridge in this process, which then serves the page, and the bridge on the page's port.
         """
         self.node = parameter_node("web_ui", context=context)
         try:
@@ -66,36 +79,40 @@ class WebPage:
             self.tokens = node_tokens.given_tokens(self.node) if tokens is None else tokens
             if importlib.util.find_spec("aiohttp") is None:
                 raise StartError("the page needs aiohttp: pip install aiohttp, or the system's python3-aiohttp")
-            self._thread = ServerThread(warn=self.node.get_logger().warning)
+            thread = bridge or ServerThread(warn=self.node.get_logger().warning)
+            self._own_thread = thread if bridge is None else None
             try:
-                self._serve()
+                self._serve(thread)
             except BaseException:
-                self._thread.close()
+                self.stop()
                 raise
         except BaseException:
             self.node.destroy_node()
             raise
 
-    def _serve(self) -> None:
+    def _serve(self, thread: ServerThread) -> None:
         values = self.params
         page = resources.page()
         if page is None:
             self.node.get_logger().warning(resources.PAGE_BUILD_HINT)
-        config = {"foxglove_port": values.foxglove_port, "version": thymio_sim_ros.__version__}
+        foxglove_port = values.foxglove_port if thread is self._own_thread else OFF
+        config: dict[str, str | int] = {"version": thymio_sim_ros.__version__}
+        if foxglove_port != OFF:
+            config["foxglove_port"] = foxglove_port
         settings = Settings(
-            values.foxglove_port,
+            foxglove_port,
             is_loopback=is_loopback(values.address),
             allowed_hosts=tuple(name.lower() for name in values.allowed_hosts if name),
         )
         try:
-            self.port = self._thread.listen(values.address, values.port)[1]
+            self.port = thread.listen(values.address, values.port)[1]
         except OSError as error:
             where = f"{values.address}:{values.port}"
             raise StartError(
                 f"the page's port {where} cannot be used: {error.strerror}; "
                 "choose another with --port, or port:=NUMBER of ros2"
             ) from error
-        self._thread.mount_page(Content(page, json.dumps(config).encode()), settings)
+        thread.mount_page(Content(page, json.dumps(config).encode()), settings)
 
     @property
     def startup_message(self) -> str:
@@ -116,8 +133,9 @@ class WebPage:
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
     def stop(self) -> None:
-        """Stop the server and its thread."""
-        self._thread.close()
+        """Stop the server and its thread; in that of a bridge it ends with the bridge."""
+        if self._own_thread is not None:
+            self._own_thread.close()
 
     def close(self) -> None:
         """Stop the server and destroy the node."""
