@@ -10,7 +10,7 @@ import pytest
 from thymio_sim_ros.bridge.access import Tokens
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.servers import add_server_options, select_servers
-from thymio_sim_ros.network.settings import OFF
+from thymio_sim_ros.network.settings import HTTP, OFF
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams
 
 pytestmark = pytest.mark.process
@@ -19,11 +19,12 @@ NO_TOKENS = Tokens()
 TOKENS = Tokens("full-token", "watch-token")
 
 
-def servers(*words, address="localhost", tokens=NO_TOKENS):
+def servers(*words, address="localhost", tokens=NO_TOKENS, no_web=True):
     parser = argparse.ArgumentParser()
     add_server_options(parser)
     options = parser.parse_args(["--no-aseba", "--no-tdm", *words])
     options.address, options.headless = address, False
+    options.no_web, options.port = no_web, 8080
     return select_servers(options, 1, tokens)
 
 
@@ -66,3 +67,18 @@ def test_origins_are_checked_and_reach_the_runtime(port, capsys):
         with pytest.raises(SystemExit):
             servers("--allow-origin", wrong)
         assert "expected an origin such as https://example.org:8080, or *" in capsys.readouterr().err
+
+
+def test_it_may_be_on_the_port_of_the_page_only():
+    found = servers("--http", no_web=False)
+    assert (found.settings.http_port, found.settings.on_page, found.settings.is_off) == (OFF, (HTTP,), False)
+    assert found.lines == ("HTTP      http://localhost:8080/nodes",)
+
+
+def test_a_port_of_its_own_is_beside_that_of_the_page(port):
+    assert servers(f"--http-port={port}", no_web=False).settings.on_page == (HTTP,)
+
+
+def test_without_a_page_it_needs_a_port():
+    with pytest.raises(UsageError, match="choose a port with --http-port"):
+        servers("--http")

@@ -14,8 +14,8 @@ from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.network_node import NetworkNode
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.network.hub import Network
+from thymio_sim_ros.network.servers import NetworkServers
 from thymio_sim_ros.network.settings import NetworkSettings
-from thymio_sim_ros.network.thread import NetworkThread
 from thymio_sim_ros.sim.commands import Command
 
 T = TypeVar("T")
@@ -30,7 +30,7 @@ class ServedRobot:
         self.warnings: list[str] = []
         self.commands: list[Command] = []
         settings = NetworkSettings(aseba_port=port, is_announced=False)
-        self._thread = NetworkThread(settings, warn=self.warnings.append, info=lambda _text: None)
+        self._thread = NetworkServers(settings, warn=self.warnings.append, info=lambda _text: None)
         self._host = BehaviorHost(AsebaDevice(node_id=number, options=DeviceOptions(layout)))
         self._nodes = _Nodes(self._host, self.commands)
         self._network = Network("robot", self._nodes)

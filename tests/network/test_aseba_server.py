@@ -26,8 +26,8 @@ from tests.network.aseba_client import AsebaClient
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.network import aseba_server
 from thymio_sim_ros.network.hub import Hub, Network
+from thymio_sim_ros.network.servers import NetworkServers
 from thymio_sim_ros.network.settings import NetworkSettings
-from thymio_sim_ros.network.thread import NetworkThread
 
 pytestmark = pytest.mark.process
 
@@ -70,7 +70,7 @@ class Bench:
     def __init__(self, *, robots=1, **settings):
         self.warnings = []
         settings = NetworkSettings(aseba_port=0, is_announced=False, **settings)
-        self.thread = NetworkThread(settings, warn=self.warnings.append, info=self.warnings.append)
+        self.thread = NetworkServers(settings, warn=self.warnings.append, info=self.warnings.append)
         self.nodes = []
         self.clients = []
         self.networks = []
@@ -266,7 +266,7 @@ def test_a_port_that_is_taken_is_reported(make):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         warnings = []
-        thread = NetworkThread(
+        thread = NetworkServers(
             NetworkSettings(aseba_port=port, is_announced=False), warn=warnings.append, info=warnings.append
         )
         thread.call(thread.hub.add, Network("anna", Nodes(1)))

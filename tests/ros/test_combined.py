@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import urllib.error
 import urllib.request
 
 import pytest
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from tests.patience import PATIENCE_S
@@ -16,7 +17,9 @@ from tests.processes import free_port
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Tokens
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
 from thymio_sim_ros.device.options import DeviceOptions
-from thymio_sim_ros.network.settings import OFF
+from thymio_sim_ros.network.settings import HTTP, OFF, TDM, TDM_PATH, NetworkSettings
+from thymio_sim_ros.network.tdm.protocol.codec import decode, encode
+from thymio_sim_ros.network.tdm.protocol.messages import ConnectionHandshake
 from thymio_sim_ros.ros import combined
 from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
@@ -90,6 +93,55 @@ def test_the_bridge_is_on_the_port_of_the_page_and_on_its_own_if_it_has_one(ros,
     with pytest.raises(InvalidStatus, match="404"), connect(f"ws://localhost:{page.port}/elsewhere"):
         pass
     assert bridge.port == suite.foxglove_port
+
+
+def test_other_servers_are_on_the_port_of_the_page(ros):
+    network = NetworkSettings(on_page=(TDM, HTTP), is_announced=False)
+    suite = SuiteConfig(playground="base", program="none", port=0, foxglove_port=OFF, network=network)
+    _, _, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    with connect(f"ws://localhost:{page.port}{TDM_PATH}") as manager:
+        manager.send(encode(ConnectionHandshake()))
+        assert isinstance(decode(manager.recv(PATIENCE_S)), ConnectionHandshake)
+    with urllib.request.urlopen(f"http://localhost:{page.port}/nodes", timeout=PATIENCE_S) as nodes:
+        assert isinstance(json.load(nodes), list)
+    with urllib.request.urlopen(f"http://localhost:{page.port}/config.json", timeout=PATIENCE_S) as config:
+        assert "version" in json.load(config)
+
+
+@pytest.mark.parametrize("password", ["", "wrongtoken", "fulltoken"])
+def test_clients_on_the_port_of_the_page_need_the_token_also_on_this_computer(ros, password):
+    network = NetworkSettings(on_page=(TDM, HTTP), is_announced=False)
+    suite = SuiteConfig(
+        playground="base", program="none", port=0, foxglove_port=OFF, network=network, tokens=Tokens("fulltoken", "")
+    )
+    _, _, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    with connect(f"ws://localhost:{page.port}{TDM_PATH}") as manager:
+        manager.send(encode(ConnectionHandshake(password=password)))
+        if password == "fulltoken":
+            assert isinstance(decode(manager.recv(PATIENCE_S)), ConnectionHandshake)
+        else:
+            with pytest.raises(ConnectionClosed):
+                manager.recv(PATIENCE_S)
+    url = f"http://localhost:{page.port}/nodes?token={password}"
+    if password == "fulltoken":
+        urllib.request.urlopen(url, timeout=PATIENCE_S).close()
+    else:
+        with pytest.raises(urllib.error.HTTPError, match="401"):
+            urllib.request.urlopen(url, timeout=PATIENCE_S)
+
+
+@pytest.mark.parametrize(("header", "origin"), [({}, "https://evil.example"), ({"Host": "evil.example"}, None)])
+def test_foreign_pages_reach_no_server_on_the_port_of_the_page(ros, header, origin):
+    network = NetworkSettings(on_page=(TDM, HTTP), is_announced=False)
+    suite = SuiteConfig(playground="base", program="none", port=0, foxglove_port=OFF, network=network)
+    _, _, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    headers = header if origin is None else {"Origin": origin}
+    for path in ("/", TDM_PATH) if origin else ():
+        with pytest.raises(InvalidStatus, match="403"), connect(f"ws://localhost:{page.port}{path}", origin=origin):
+            pass
+    request = urllib.request.Request(f"http://localhost:{page.port}/nodes", headers=headers)
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        urllib.request.urlopen(request, timeout=PATIENCE_S)
 
 
 def test_a_bridge_without_a_port_needs_a_page(ros):

@@ -14,9 +14,12 @@ from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.network.settings import (
     ASEBA_PORT,
+    HTTP,
     HTTP_PORT,
     LAST_PORT,
     OFF,
+    TDM,
+    TDM_PATH,
     TDM_PORT,
     TDM_WS_PORT,
     NetworkSettings,
@@ -68,13 +71,17 @@ def add_server_options(parser: argparse.ArgumentParser) -> None:
         metavar="PORT",
         help=f"WebSocket port of the Thymio Device Manager (default: {TDM_WS_PORT} if it is free)",
     )
+    group.add_argument(
+        "--no-tdm-ports", action="store_true", help=f"Thymio Device Manager on the page's port only, at {TDM_PATH}"
+    )
     group.add_argument("--no-tdm", action="store_true", help="no Thymio Device Manager")
+    group.add_argument("--http", action="store_true", help="HTTP interface on the page's port")
     group.add_argument(
         "--http-port",
         type=port_argument,
         metavar="PORT",
-        help=f"port of the HTTP interface, as asebahttp offers it on {HTTP_PORT} (default: none); it listens on "
-        "--address, and clients need the token where page and bridge need it",
+        help=f"port of the HTTP interface, as asebahttp has it on {HTTP_PORT} (default: none), beside the page's port; "
+        "it listens on --address, and clients need the token where page and bridge need it",
     )
     group.add_argument(
         "--allow-origin",
@@ -94,8 +101,10 @@ def select_servers(options: argparse.Namespace, robots: int, tokens: Tokens) -> 
     Raises UsageError for a chosen port that cannot be used.
     """
     aseba_port, aseba_line = _aseba(options, robots)
-    tdm_port, tdm_ws_port, tdm_line = _tdm(options, tokens)
-    http_line = _http(options, tokens)
+    has_page = not (options.headless or options.no_web)
+    tdm_port, tdm_ws_port, tdm_line = _tdm(options, tokens, has_page=has_page)
+    http_line = _http(options, tokens, has_page=has_page)
+    is_on_page = {TDM: not options.no_tdm, HTTP: options.http or options.http_port is not None}
     settings = NetworkSettings(
         aseba_port=aseba_port,
         aseba_address=options.aseba_address,
@@ -104,6 +113,7 @@ def select_servers(options: argparse.Namespace, robots: int, tokens: Tokens) -> 
         tdm_port=tdm_port,
         tdm_ws_port=tdm_ws_port,
         http_port=options.http_port or OFF,
+        on_page=tuple(name for name, is_on in is_on_page.items() if is_on and has_page),
         allowed_origins=tuple(options.allow_origin),
         is_announced=not options.no_announcement,
     )
@@ -135,11 +145,16 @@ def _aseba(options: argparse.Namespace, robots: int) -> tuple[int, str]:
     return first, f"Aseba     {host} port {places} (Studio: tcp:host={host};port={first}){everyone}"
 
 
-def _tdm(options: argparse.Namespace, tokens: Tokens) -> tuple[int, int, str]:
+def _tdm(options: argparse.Namespace, tokens: Tokens, *, has_page: bool) -> tuple[int, int, str]:
     """The ports for TCP and WebSocket, and the line of the banner."""
     chosen = options.tdm_port, options.tdm_ws_port
     if options.no_tdm or (options.headless and chosen == (None, None)):
         return OFF, TDM_WS_PORT, ""
+    page = describe_urls("ws", options.address, options.port, TDM_PATH) if has_page else "none"
+    if options.no_tdm_ports:
+        if not has_page or chosen != (None, None):
+            raise UsageError("--no-tdm-ports: expected a page, and neither --tdm-port nor --tdm-ws-port")
+        return OFF, TDM_WS_PORT, f"TDM       {page}"
     ports = chosen[0] or TDM_PORT, chosen[1] or TDM_WS_PORT
     for port, given, option in zip(ports, chosen, ("--tdm-port", "--tdm-ws-port"), strict=True):
         try:
@@ -148,22 +163,25 @@ def _tdm(options: argparse.Namespace, tokens: Tokens) -> tuple[int, int, str]:
             if given is not None:
                 raise UsageError(f"Thymio Device Manager: {error.strerror}; choose another with {option}") from error
             reason = f"{error.strerror}; Thymio Suite may be running; another port: {option}"
-            return OFF, TDM_WS_PORT, f"TDM       none: {reason}"
+            return OFF, TDM_WS_PORT, f"TDM       {page}{' only' if has_page else ''}: {reason}"
     host = "localhost" if is_loopback(options.address) else options.address
     password = "" if is_loopback(options.address) or not tokens.full else f", password {tokens.full}"
     return *ports, f"TDM       {host} port {ports[0]}, WebSocket {ports[1]} (tdmclient, Scratch, VPL 3){password}"
 
 
-def _http(options: argparse.Namespace, tokens: Tokens) -> str:
+def _http(options: argparse.Namespace, tokens: Tokens, *, has_page: bool) -> str:
     """The line of the banner."""
-    if options.http_port is None:
+    if options.http and not has_page:
+        raise UsageError("--http: expected a page; without one, choose a port with --http-port")
+    if options.http_port is None and not options.http:
         return ""
-    try:
-        check_free(options.address, options.http_port)
-    except OSError as error:
-        raise UsageError(f"HTTP interface: {error.strerror}; choose another with --http-port") from error
+    if options.http_port is not None:
+        try:
+            check_free(options.address, options.http_port)
+        except OSError as error:
+            raise UsageError(f"HTTP interface: {error.strerror}; choose another with --http-port") from error
     path = f"/nodes?token={tokens.full}" if tokens.full else "/nodes"
-    return f"HTTP      {describe_urls('http', options.address, options.http_port, path)}"
+    return f"HTTP      {describe_urls('http', options.address, options.http_port or options.port, path)}"
 
 
 def _origin_argument(text: str) -> str:

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["ASEBA_PORT", "HTTP_PORT", "LAST_PORT", "OFF", "TDM_PORT", "TDM_WS_PORT", "NetworkSettings"]
+__all__ = [
+    "ASEBA_PORT",
+    "HTTP",
+    "HTTP_PORT",
+    "LAST_PORT",
+    "OFF",
+    "TDM",
+    "TDM_PATH",
+    "TDM_PORT",
+    "TDM_WS_PORT",
+    "NetworkSettings",
+]
 
 ASEBA_PORT = 33333
 """The port of the first robot, as in all Aseba tools."""
@@ -14,6 +25,12 @@ TDM_PORT, TDM_WS_PORT = 8596, 8597
 
 HTTP_PORT = 3000
 """The port of asebahttp."""
+
+TDM, HTTP = "tdm", "http"
+"""Servers that can be on the port of a page."""
+
+TDM_PATH = "/tdm"
+"""The path of the Thymio Device Manager's WebSocket on the port of a page."""
 
 LAST_PORT = 65535
 
@@ -34,6 +51,7 @@ class NetworkSettings:
         tdm_port: TCP port of the Thymio Device Manager; `OFF` also for its WebSocket port.
         tdm_ws_port: WebSocket port of the Thymio Device Manager.
         http_port: port of the HTTP interface.
+        on_page: servers, `TDM` and `HTTP`, that are also on the port of a page in the same process.
         allowed_origins: additional origins of web pages that may connect; `*` allows all.
         is_announced: whether services are announced by mDNS.
     """
@@ -45,10 +63,21 @@ class NetworkSettings:
     tdm_port: int = OFF
     tdm_ws_port: int = TDM_WS_PORT
     http_port: int = OFF
+    on_page: tuple[str, ...] = ()
     allowed_origins: tuple[str, ...] = ()
     is_announced: bool = True
 
     @property
     def is_off(self) -> bool:
         """Whether nothing is served."""
-        return {self.aseba_port, self.tdm_port, self.http_port} == {OFF}
+        return self.aseba_port == OFF and not self.has_tdm and not self.has_http
+
+    @property
+    def has_tdm(self) -> bool:
+        """Whether there is a Thymio Device Manager."""
+        return self.tdm_port != OFF or TDM in self.on_page
+
+    @property
+    def has_http(self) -> bool:
+        """Whether there is an HTTP interface."""
+        return self.http_port != OFF or HTTP in self.on_page

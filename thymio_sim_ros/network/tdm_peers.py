@@ -24,13 +24,15 @@ Report = Callable[[str, str], None]
 
 _READ_BYTES = 1 << 16
 _HEARTBEAT_S = 30.0
-"""Time without a message after which a client of the WebSocket port is pinged."""
+"""Time without a message after which a client on a WebSocket is pinged."""
 
 
 class Peer(Protocol):
     """A connection of a client."""
 
     address: str
+    is_direct: bool
+    """Whether `address` is that of the client; on the port of a page it may be that of a proxy."""
 
     def buffers(self) -> AsyncIterator[bytes]:
         """The buffers that arrive, until the connection ends. Raises TdmFrameError for a wrong frame."""
@@ -51,6 +53,8 @@ class Peer(Protocol):
 
 class TcpPeer:
     """A client of the TCP port."""
+
+    is_direct = True
 
     def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self._reader, self._writer = reader, writer
@@ -87,10 +91,11 @@ class TcpPeer:
 
 
 class WebSocketPeer:
-    """A client of the WebSocket port: each message is a binary frame."""
+    """A client on a WebSocket: each message is a binary frame."""
 
-    def __init__(self, socket: ClientSocket, transport: asyncio.Transport, max_unsent: int) -> None:
+    def __init__(self, socket: ClientSocket, transport: asyncio.Transport, max_unsent: int, *, is_direct: bool) -> None:
         """Serve a client whose handshake is complete; `max_unsent`: see `TdmServer`."""
+        self.is_direct = is_direct
         self.response = socket.response
         """The answer to the client's request."""
         self._socket, self._transport = socket, transport
@@ -139,7 +144,7 @@ def is_this_computer(address: str) -> bool:
 
 
 async def accept_websocket(
-    request: web.BaseRequest, allowed_origins: Sequence[str], report: Report, max_unsent: int
+    request: web.BaseRequest, allowed_origins: Sequence[str], report: Report, max_unsent: int, *, is_direct: bool
 ) -> WebSocketPeer | None:
     """Make the handshake with a client, except foreign web pages (`bridge.origin_policy`); None: it has left.
 
@@ -151,4 +156,4 @@ async def accept_websocket(
         raise RefusedError(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.")
     socket = await ClientSocket.accept(request, max_size=MAX_MESSAGE_BYTES, heartbeat_s=_HEARTBEAT_S)
     transport = request.transport
-    return None if transport is None else WebSocketPeer(socket, transport, max_unsent)
+    return None if transport is None else WebSocketPeer(socket, transport, max_unsent, is_direct=is_direct)

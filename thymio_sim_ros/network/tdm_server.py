@@ -16,6 +16,7 @@ import traceback
 from collections.abc import Callable, Coroutine, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
+from http import HTTPStatus
 from socket import SO_SNDBUF, SOL_SOCKET, socket
 from uuid import uuid4
 
@@ -24,6 +25,7 @@ from aiohttp import web
 from aseba_vm.protocol.messages import Message as AsebaMessage
 from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError
 from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
+from thymio_sim_ros.bridge.handshake import RefusedError
 from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.acceptor import Acceptor
@@ -90,6 +92,7 @@ class TdmServer:
         self._manager: DeviceManager
         self.port, self.ws_port = OFF, OFF
         """The open ports."""
+        self._is_open = False
         self._links: dict[int, Connection] = {}
         """Our connection to each network, by the number that the manager knows."""
         self._network_numbers = itertools.count()
@@ -108,9 +111,11 @@ class TdmServer:
         """Serve the networks of the hub. Ports that cannot be opened are reported, and nothing is served."""
         settings = self._settings
         tcp: list[socket] = []
+        websocket: list[socket] = []
         try:
-            tcp = listen(settings.address, settings.tdm_port)
-            websocket = listen(settings.address, settings.tdm_ws_port)
+            if settings.tdm_port != OFF:
+                tcp = listen(settings.address, settings.tdm_port)
+                websocket = listen(settings.address, settings.tdm_ws_port)
         except (OSError, OverflowError) as error:
             for listener in tcp:
                 listener.close()
@@ -118,24 +123,27 @@ class TdmServer:
             return
         for listener in (*tcp, *websocket):  # clients inherit it; otherwise the kernel keeps megabytes of old values
             listener.setsockopt(SOL_SOCKET, SO_SNDBUF, _KERNEL_BUFFER)
-        self.port, self.ws_port = tcp[0].getsockname()[1], websocket[0].getsockname()[1]
-        manager = ManagerSettings(self.uuid, self.ws_port, self._passwords.tokens.full)
+        if tcp:
+            self.port, self.ws_port = tcp[0].getsockname()[1], websocket[0].getsockname()[1]
+        manager = ManagerSettings(self.uuid, max(self.ws_port, 0), self._passwords.tokens.full)
         self._manager = DeviceManager(manager, self._now_ns())
         self._hub.follow(self)
         self._acceptor = Acceptor(tcp, self._serve_tcp, self._report_error)
         self._websocket_listeners = websocket
         application = Application()
-        application.websockets["/"] = self.handle
+        application.websockets["/"] = self._handle
         connections = 2 * self._max_clients  # of which half may be in their handshake
         self._websockets = HttpConnections(application.answer, connections, self._report, asyncio.get_running_loop())
         self._websockets.accept(websocket)
         self._run(self._advance())
+        self._is_open = True
         self._opened(self)
 
     async def close(self) -> None:
         """Close ports and connections."""
-        if self.port == OFF:
+        if not self._is_open:
             return
+        self._is_open = False
         self.port = self.ws_port = OFF
         self._hub.unfollow(self)
         self._acceptor.close()
@@ -189,9 +197,17 @@ class TdmServer:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def handle(self, request: web.BaseRequest) -> web.StreamResponse:
+    async def handle_on_page(self, request: web.BaseRequest) -> web.StreamResponse:
+        """Serve a client on the port of a page. It gives the password, if there is one, also on this computer."""
+        if not self._is_open:
+            raise RefusedError(HTTPStatus.SERVICE_UNAVAILABLE, "the Thymio Device Manager does not run")
+        return await self._handle(request, is_direct=False)
+
+    async def _handle(self, request: web.BaseRequest, *, is_direct: bool = True) -> web.StreamResponse:
         """Serve a client that asks for a WebSocket, until it disconnects. Raises RefusedError for a foreign page."""
-        peer = await accept_websocket(request, self._settings.allowed_origins, self._report, self._max_unsent)
+        peer = await accept_websocket(
+            request, self._settings.allowed_origins, self._report, self._max_unsent, is_direct=is_direct
+        )
         if peer is not None:
             await self._serve(peer)
         return web.Response() if peer is None else peer.response
@@ -225,7 +241,7 @@ class TdmServer:
         slot = self._slots.add(peer.address)
         slot.close = partial(self._disconnect, client, "another client needs its place, and it has sent no handshake")
         self._peers[client] = peer
-        self._manager.join(client, is_local=is_this_computer(peer.address))
+        self._manager.join(client, is_local=_is_local(peer))
         try:
             await self._read(client, peer, slot)
         except TooManyAttemptsError as error:
@@ -267,7 +283,7 @@ class TdmServer:
 
     async def _count_password(self, message: TdmMessage, peer: Peer) -> None:
         """Delay the message that has a client's password, or raise TooManyAttemptsError, as long as many were wrong."""
-        if isinstance(message, ConnectionHandshake) and not is_this_computer(peer.address):
+        if isinstance(message, ConnectionHandshake) and not _is_local(peer):
             await self._passwords.role(message.password, peer.address)
 
     def _deliver(self) -> set[int]:
@@ -325,3 +341,8 @@ class TdmServer:
         if peer is not None:
             self._report("tdm closing", f"client {peer.address} of the device manager is disconnected: {reason}")
             peer.abort()
+
+
+def _is_local(peer: Peer) -> bool:
+    """Whether a client is on this computer."""
+    return peer.is_direct and is_this_computer(peer.address)

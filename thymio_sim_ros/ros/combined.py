@@ -14,6 +14,7 @@ from contextlib import closing
 
 import rclpy
 from rclpy.context import Context
+from rclpy.logging import get_logger
 from rclpy.node import Node
 
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
@@ -69,21 +70,37 @@ def suite_nodes(
     first node. `peers` are needed if the endpoints of `context` do not match each other. Raises StartError if a node
     cannot start.
     """
+    # One thread for all servers, so that the page's port has everything; it ends with the last node that uses it.
+    thread = ServerThread(warn=get_logger("thymio").warning) if suite.web else None
+    try:
+        yield from _nodes(context, suite, warnings, peers, thread)
+    finally:
+        if thread is not None:
+            thread.close()
+
+
+def _nodes(
+    context: Context,
+    suite: SuiteConfig,
+    warnings: Sequence[str],
+    peers: SuitePeers | None,
+    thread: ServerThread | None,
+) -> Iterator[AnnouncedNode]:
     given = defaults(suite)
     tokens = suite.tokens
-    bridge_thread: ServerThread | None = None
     is_simulated = not suite.robot
     if is_simulated:
         simulator = Simulator(context, given[SIMULATOR])
         _log(simulator.node, warnings)
         try:
-            simulator.attached = (AsebaRuntime(context, given[RUNTIME], simulator=simulator, tokens=tokens),)
+            runtime = AsebaRuntime(context, given[RUNTIME], simulator=simulator, tokens=tokens, thread=thread)
+            simulator.attached = (runtime,)
         except StartError:
             simulator.close()
             raise
         yield simulator
     else:
-        runtime = AsebaRuntime(context, given[RUNTIME], use_sim_time=False, tokens=tokens)
+        runtime = AsebaRuntime(context, given[RUNTIME], use_sim_time=False, tokens=tokens, thread=thread)
         _log(runtime.node, warnings)
         yield runtime
     if suite.foxglove:
@@ -95,14 +112,14 @@ def suite_nodes(
             use_sim_time=is_simulated,
             tokens=tokens,
             peers=None if peers is None else peers.of_bridge(),
-            has_page=suite.web,
+            page_thread=thread,
         )
         yield bridge
-        bridge_thread, tokens = bridge.thread, bridge.tokens
+        tokens = bridge.tokens
     if suite.web:
         from thymio_sim_ros.ros.web.node import WebPage
 
-        yield WebPage(context, given[PAGE], tokens, bridge_thread)
+        yield WebPage(context, given[PAGE], tokens, thread)
 
 
 def _log(node: Node, warnings: Sequence[str]) -> None:

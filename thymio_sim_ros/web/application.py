@@ -1,4 +1,4 @@
-"""What all ports of a process answer: WebSockets by their path, the page for everything else.
+"""What all ports of a process answer: WebSockets by their path, interfaces by theirs, the page everything else.
 
 Servers join and leave at any time, because the nodes of a suite start one after the other.
 """
@@ -25,6 +25,8 @@ class Application:
     def __init__(self) -> None:
         self.websockets: dict[str, Handler] = {}
         """Servers of WebSockets by path. They raise RefusedError for an invalid handshake."""
+        self.interfaces: list[tuple[Callable[[str], bool], Handler]] = []
+        """Servers of other requests, each with a function that knows its paths."""
         self.page: Handler | None = None
         """The server of all other requests."""
 
@@ -32,8 +34,12 @@ class Application:
         """The response to a request."""
         path = request.raw_path.partition("?")[0]
         is_websocket = request.headers.get("Upgrade", "").lower() == "websocket"
-        if not is_websocket and self.page is not None:
-            return await self.page(request)
+        if not is_websocket:
+            for is_path, handler in self.interfaces:
+                if is_path(path):
+                    return await handler(request)
+            if self.page is not None:
+                return await self.page(request)
         start_answer(request)
         if not is_websocket:
             return text_response(426, "There is no page here, only WebSockets: ws://…", {"Upgrade": "websocket"})

@@ -1,13 +1,14 @@
-"""The thread of the servers of page and bridge: its event loop, its ports, and the application behind them."""
+"""The thread of all servers of a process: its event loop, its ports, and the application behind them."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import ssl
 import threading
 import traceback
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from socket import socket
 from typing import TYPE_CHECKING, Any
 
@@ -28,36 +29,46 @@ _CLOSE_TIMEOUT_S = 3.0
 
 
 class ServerThread:
-    """A thread with one application on any number of ports. All methods may be called in any thread."""
+    """A thread with one application on any number of ports. The methods may be called in any thread.
+
+    Each node that uses it calls `close`; the thread ends with the last call.
+    """
 
     def __init__(self, *, warn: Callable[[str], object], connections: int | None = None) -> None:
         """Start the thread; it serves nothing until something is mounted and `listen` is called.
 
         `warn` is called in the thread, at most once a minute for each kind of problem. `connections`: their maximum
-        number on all ports, by default as many as this process can have.
+        number on the ports of `listen`, by default as many as this process can have.
         """
         self._warn = warn
-        self._report = ReportLimiter(lambda text: warn(f"page and bridge: {text} (not repeated for a minute)"))
+        self._report = ReportLimiter(lambda text: warn(f"servers: {text} (not repeated for a minute)"))
         self._max_connections = max_connections() if connections is None else connections
         # Not the default loop of Windows: it has no `add_reader` and `add_writer`, and its socket stays the wakeup
         # descriptor of signals when a thread other than the main thread, which made the loop, closes it.
         self.loop = asyncio.SelectorEventLoop()
         """The event loop of the thread."""
+        self.loop.set_exception_handler(lambda _loop, context: self._report(_kind(context), _description(context)))
         self._listeners: list[socket] = []
         self._closers: list[Callable[[], Awaitable[None]]] = []
         """Close what has been mounted."""
-        self._application: Application
-        self._connections: HttpConnections
         self._stop = asyncio.Event()
-        self._is_closed = False
-        self._thread = threading.Thread(target=self._run, name="web-server", daemon=True)
+        self._users = 1
+        self._lock = threading.Lock()
+        """Guards `_users`."""
+        self._thread = threading.Thread(target=self._run, name="servers", daemon=True)
         self._thread.start()
+
+    def share(self) -> ServerThread:
+        """This thread, for one more node."""
+        with self._lock:
+            self._users += 1
+        return self
 
     def listen(self, address: str, port: int, tls: ssl.SSLContext | None = None) -> tuple[str, int]:
         """Serve on a port; return the numeric address and the actual port. Raises OSError if it cannot be bound."""
         listeners = listen(address, port)
         self._listeners += listeners
-        self._call(lambda: self._connections.accept(listeners, tls))
+        self.call(lambda: self._connections.accept(listeners, tls))
         found = listeners[0].getsockname()
         return str(found[0]), int(found[1])
 
@@ -68,10 +79,10 @@ class ServerThread:
             from thymio_sim_ros.bridge.websocket import BridgeSockets
 
             sockets = BridgeSockets(bridge)
-            self._application.websockets["/"] = sockets.handle
+            self.application.websockets["/"] = sockets.handle
             self._closers.append(sockets.close)
 
-        self._call(mount)
+        self.call(mount)
 
     def mount_page(self, content: Content, settings: Settings) -> None:
         """Serve a page."""
@@ -80,37 +91,54 @@ class ServerThread:
             from thymio_sim_ros.web.server import Page
 
             page = Page(content, settings, self._report)
-            self._application.page = page.answer
+            self.application.page = page.answer
             self._closers.append(page.close)
 
-        self._call(mount)
+        self.call(mount)
+
+    def call(self, function: Callable[..., object], *arguments: Any) -> None:
+        """Call a function in the thread; does nothing once the thread has ended."""
+        with contextlib.suppress(RuntimeError):
+            self.loop.call_soon_threadsafe(function, *arguments)
+
+    def run(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run a coroutine in the thread, and wait for its end for at most `_CLOSE_TIMEOUT_S`."""
+        try:
+            done = asyncio.run_coroutine_threadsafe(work, self.loop)
+        except RuntimeError:  # the thread has ended
+            work.close()
+            return
+        with contextlib.suppress(TimeoutError):
+            done.result(_CLOSE_TIMEOUT_S)
 
     def close(self) -> None:
-        """Stop the servers, their connections and the thread; a second call has no effect."""
-        if self._is_closed:
-            return
-        self._is_closed = True
-        self._call(self._stop.set)
-        self._thread.join(_CLOSE_TIMEOUT_S)
+        """Stop the servers, their connections and the thread, when nothing else uses it."""
+        with self._lock:
+            self._users -= 1
+            is_last = self._users == 0
+        if is_last:
+            self.call(self._stop.set)
+            self._thread.join(_CLOSE_TIMEOUT_S)
 
-    def _call(self, function: Callable[[], object]) -> None:
-        with contextlib.suppress(RuntimeError):  # the loop has ended because of an error
-            self.loop.call_soon_threadsafe(function)
+    @functools.cached_property
+    def application(self) -> Application:
+        """What the ports of `listen` answer; only in this thread."""
+        # aiohttp is imported in this thread, so that it does not delay the start of the nodes, and only if it is used.
+        from thymio_sim_ros.web.application import Application
+
+        return Application()
+
+    @functools.cached_property
+    def _connections(self) -> HttpConnections:
+        from thymio_sim_ros.web.http_connections import HttpConnections
+
+        return HttpConnections(self.application.answer, self._max_connections, self._report, self.loop)
 
     def _run(self) -> None:
         try:
-            # aiohttp is imported in this thread, so that it does not delay the start of the nodes.
-            from thymio_sim_ros.web.application import Application
-            from thymio_sim_ros.web.http_connections import HttpConnections
-
-            self.loop.set_exception_handler(lambda _loop, context: self._report(_kind(context), _description(context)))
-            self._application = Application()
-            answer = self._application.answer
-            self._connections = HttpConnections(answer, self._max_connections, self._report, self.loop)
             self.loop.run_until_complete(self._serve())
         except Exception:
-            text = traceback.format_exc()
-            self._warn(f"the server of page and bridge has ended, internal error (please report):\n{text}")
+            self._warn(f"the servers have ended, internal error (please report):\n{traceback.format_exc()}")
         finally:
             for listener in self._listeners:
                 listener.close()
@@ -121,7 +149,12 @@ class ServerThread:
         await self._stop.wait()
         for close in self._closers:
             await close()
-        await self._connections.close()
+        if "_connections" in self.__dict__:
+            await self._connections.close()
+        others = asyncio.all_tasks() - {asyncio.current_task()}
+        for task in others:
+            task.cancel()
+        await asyncio.gather(*others, return_exceptions=True)
 
 
 def _kind(context: Mapping[str, Any]) -> str:

@@ -18,6 +18,7 @@ from thymio_sim_ros.network.http.requests import (
     ResetAll,
     Send,
     StreamEvents,
+    is_path,
     parse_request,
 )
 
@@ -111,3 +112,13 @@ def test_any_request_is_an_action_or_an_error(method, parts, body):
         action = parse_request(method, "/" + "/".join(parts), body)
         if isinstance(action, Send):
             assert all(-0x8000 <= value <= 0x7FFF for value in action.values)
+
+
+@pytest.mark.parametrize("path", ["/nodes", "//nodes/1", "/%6eodes", "/events/run", "/reset", "/reset_all"])
+def test_paths_of_the_interface_are_known(path: str) -> None:
+    assert is_path(path)
+
+
+@pytest.mark.parametrize("path", ["/", "", "/index.html", "/nodes.js", "/assets/nodes", "/playgrounds/line.json"])
+def test_other_paths_are_left_to_the_page(path: str) -> None:
+    assert not is_path(path)

@@ -9,8 +9,8 @@ import pytest
 zeroconf = pytest.importorskip("zeroconf", reason="needs zeroconf (pip install zeroconf)")
 
 from tests.patience import until
+from thymio_sim_ros.network.servers import NetworkServers
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
-from thymio_sim_ros.network.thread import NetworkThread
 
 pytestmark = pytest.mark.process
 
@@ -20,7 +20,7 @@ KIND = "_mobsya._tcp.local."
 def test_a_program_of_this_computer_finds_the_device_manager() -> None:
     warnings: list[str] = []
     settings = NetworkSettings(tdm_port=0, tdm_ws_port=0)
-    thread = NetworkThread(settings, warn=warnings.append, info=warnings.append)
+    thread = NetworkServers(settings, warn=warnings.append, info=warnings.append)
     name = f"Thymio Device Manager on {socket.gethostname()}".replace(".", "-").encode()[:63].decode(errors="ignore")
     try:
         with zeroconf.Zeroconf(interfaces=["127.0.0.1"]) as listener:

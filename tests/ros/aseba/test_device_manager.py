@@ -30,8 +30,8 @@ def manager(ros, runtime):
 
     def start(source="", **parameters):
         node = runtime(source, network=NetworkParams(tdm_port=0, tdm_ws_port=0, announce=False), **parameters)
-        ros.until(lambda: node.network.thread.tdm_ports[0] != OFF, what="the ports are open")
-        clients.append(start.work(lambda: RawClient(node.network.thread.tdm_ports[0], greet=False)))
+        ros.until(lambda: node.network.servers.tdm_ports[0] != OFF, what="the ports are open")
+        clients.append(start.work(lambda: RawClient(node.network.servers.tdm_ports[0], greet=False)))
         clients[-1].send(m.ConnectionHandshake())
         return clients[-1]
 

@@ -43,7 +43,7 @@ def network(ros, runtime):
 
     def start(source="", **parameters):
         node = runtime(source, network=NetworkParams(aseba_port=0, announce=False), **parameters)
-        ros.until(lambda: len(node.network.thread.ports) == len(node.robots), what="the ports are open")
+        ros.until(lambda: len(node.network.servers.ports) == len(node.robots), what="the ports are open")
         return node
 
     def work(function):
@@ -52,7 +52,7 @@ def network(ros, runtime):
         return future.result()
 
     def client(node, robot=""):
-        clients.append(AsebaClient(node.network.thread.ports[robot]))
+        clients.append(AsebaClient(node.network.servers.ports[robot]))
         return clients[-1]
 
     start.work, start.client = work, client
@@ -126,10 +126,10 @@ def test_robots_have_ports_in_order_and_keep_them(ros, network):
     first, second = network.client(node, "anna"), network.client(node, "ben")
     assert network.work(lambda: first.ask(ListNodes(0, 9), NodePresent)) == NodePresent(1, 9)
     assert network.work(lambda: second.ask(ListNodes(0, 5), NodePresent)) == NodePresent(2, 5)
-    ports = node.network.thread.ports
+    ports = node.network.servers.ports
     node.robots.follow({"ben": RobotNames("ben")})
-    ros.until(lambda: list(node.network.thread.ports) == ["ben"])
-    assert node.network.thread.ports["ben"] == ports["ben"]
+    ros.until(lambda: list(node.network.servers.ports) == ["ben"])
+    assert node.network.servers.ports["ben"] == ports["ben"]
     assert network.work(lambda: first.is_closed_by_server)
     assert network.work(lambda: second.ask(ListNodes(0, 5), NodePresent)) == NodePresent(2, 5)
 

@@ -24,6 +24,7 @@ __all__ = [
     "ResetAll",
     "Send",
     "StreamEvents",
+    "is_path",
     "parse_request",
 ]
 
@@ -101,6 +102,12 @@ class StreamEvents:
 
 
 Action = ListNodes | DescribeNode | ReadOrSend | Send | LoadProgram | ResetAll | StreamEvents
+
+
+def is_path(path: str) -> bool:
+    """Whether a path, which still has its escapes, is one of the interface."""
+    first = next((part for part in urllib.parse.unquote(path).split("/") if part), "")
+    return first in ("events", "nodes", *_RESETS)
 
 
 def parse_request(method: str, target: str, body: bytes) -> Action:

@@ -33,7 +33,7 @@ from thymio_sim_ros.network.http.requests import (
 )
 from thymio_sim_ros.network.hub import Connection, Hub, Network
 from thymio_sim_ros.network.settings import OFF, NetworkSettings
-from thymio_sim_ros.web.http_connections import COMMON_HEADERS, Report, serve_connections, start_answer, start_stream
+from thymio_sim_ros.web.http_connections import COMMON_HEADERS, HttpConnections, Report, start_answer, start_stream
 
 __all__ = ["HttpServer"]
 
@@ -72,8 +72,10 @@ class HttpServer:
         self._check = TokenCheck(tokens, settings.allowed_origins)
         self._pool = ThreadPoolExecutor(1, "http-compiler")
         self._compilations = 0
-        self._stop = asyncio.Event()
-        self._tasks: list[asyncio.Task[None]] = []
+        self._connections: HttpConnections
+        """Those of its own port."""
+        self._ticking: asyncio.Task[None] | None = None
+        """Runs while it serves."""
         self._listeners: list[socket] = []
         self.port = OFF
         """The actual port."""
@@ -82,24 +84,25 @@ class HttpServer:
         """Serve the networks that are there, and those that come. A port that cannot be opened is reported."""
         settings = self._settings
         try:
-            self._listeners = listen(settings.address, settings.http_port)
+            if settings.http_port != OFF:
+                self._listeners = listen(settings.address, settings.http_port)
+                self.port = int(self._listeners[0].getsockname()[1])
         except (OSError, OverflowError) as error:
             self._report("http", f"HTTP interface: {error}")
             return
-        self.port = int(self._listeners[0].getsockname()[1])
         self._gateway.advance(self._now_ns())
         self._hub.follow(self)
-        serving = serve_connections(self._listeners, self._answer, MAX_CONNECTIONS, self._report, self._stop)
-        self._tasks = [self._loop.create_task(serving), self._loop.create_task(self._advance_forever())]
+        self._connections = HttpConnections(self.answer, MAX_CONNECTIONS, self._report, self._loop)
+        self._connections.accept(self._listeners)
+        self._ticking = self._loop.create_task(self._advance_forever())
 
     async def close(self) -> None:
         """Close port and connections, and leave the networks."""
-        self._stop.set()
-        if self._tasks:
+        if self._ticking is not None:
             self._hub.unfollow(self)
-            serving, ticking = self._tasks
-            ticking.cancel()
-            await asyncio.gather(serving, ticking, return_exceptions=True)
+            self._ticking.cancel()
+            await asyncio.gather(self._ticking, return_exceptions=True)
+            await self._connections.close()
         for network in list(self._links):
             self.network_removed(network)
         for listener in self._listeners:
@@ -149,7 +152,7 @@ class HttpServer:
             if messages := link.client.pop_messages():
                 link.connection.send(*messages)
 
-    async def _answer(self, request: web.BaseRequest) -> web.StreamResponse:
+    async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
         cors = cors_headers(request.headers, self._policy)
         try:

@@ -1,6 +1,6 @@
 """Connects the robots of a runtime to the network servers: messages of clients in, messages of the nodes out.
 
-The servers run in a thread of their own (`thymio_sim_ros/network/thread.py`); robots belong to the thread of the
+The servers run in the event loop of a thread (`thymio_sim_ros/network/servers.py`); robots belong to the thread of the
 executor. A mailbox takes the messages of clients; answers of nodes are passed by calls in the thread of the servers.
 """
 
@@ -24,11 +24,12 @@ from thymio_sim_ros.engine.inputs import (
     Remembered,
 )
 from thymio_sim_ros.network.hub import Network
+from thymio_sim_ros.network.servers import NetworkServers
 from thymio_sim_ros.network.settings import NetworkSettings
-from thymio_sim_ros.network.thread import NetworkThread
 from thymio_sim_ros.ros.aseba.device_endpoints import DeviceEndpoints
 from thymio_sim_ros.ros.aseba.robot_set import RobotSet
 from thymio_sim_ros.ros.rclpy_ext.mailbox import Mailbox
+from thymio_sim_ros.web.thread import ServerThread
 
 __all__ = ["NetworkLink"]
 
@@ -55,9 +56,19 @@ class NetworkLink:
     """The networks of all robots of a runtime, one for each robot."""
 
     def __init__(
-        self, node: Node, robots: RobotSet, settings: NetworkSettings, *, first_id: int, tokens: Tokens
+        self,
+        node: Node,
+        robots: RobotSet,
+        settings: NetworkSettings,
+        *,
+        first_id: int,
+        tokens: Tokens,
+        thread: ServerThread | None,
     ) -> None:
-        """Start the servers. `first_id`: number of the robot at the first port; `tokens`: those that clients need."""
+        """Start the servers. `first_id`: number of the robot at the first port; `tokens`: those that clients need.
+
+        `thread`: that of a page in the same process, which serves them, too.
+        """
         log = node.get_logger()
         self._robots, self._first_id = robots, first_id
         self._networks: dict[DeviceEndpoints, Network] = {}
@@ -68,7 +79,7 @@ class NetworkLink:
             weight=lambda post: len(post.messages),
             capacity=CAPACITY,
         )
-        self.thread = NetworkThread(settings, tokens=tokens, warn=log.warning, info=log.info)
+        self.servers = NetworkServers(settings, tokens=tokens, warn=log.warning, info=log.info, thread=thread)
         robots.on_change = self.update
         robots.on_sent = self._deliver
         self.update()
@@ -77,7 +88,7 @@ class NetworkLink:
         """Add networks of new robots, and remove those of robots that are gone."""
         for robot in [robot for robot in self._networks if robot not in list(self._robots)]:
             robot.on_program = lambda program: None
-            self.thread.call(self.thread.hub.remove, self._networks.pop(robot))
+            self.servers.call(self.servers.hub.remove, self._networks.pop(robot))
         for robot in self._robots:
             if robot not in self._networks:
                 nodes = _Robot(robot, self._mailbox)
@@ -90,9 +101,9 @@ class NetworkLink:
                 )
                 network.remember = nodes.remember
                 self._networks[robot] = network
-                self.thread.call(network.set_program, robot.program)
-                self.thread.call(self.thread.hub.add, network)
-                robot.on_program = partial(self.thread.call, network.set_program)
+                self.servers.call(network.set_program, robot.program)
+                self.servers.call(self.servers.hub.add, network)
+                robot.on_program = partial(self.servers.call, network.set_program)
 
     def drain(self) -> None:
         """Handle messages that clients sent before the node had an executor; nothing else handles them."""
@@ -101,7 +112,7 @@ class NetworkLink:
     def close(self) -> None:
         """Stop the servers; a second call has no effect."""
         self._mailbox.close()
-        self.thread.close()
+        self.servers.close()
 
     def _handle(self, post: _Post) -> None:
         """Execute the messages of a client. Replies stay in order with the messages that the node sends by itself."""
@@ -125,7 +136,7 @@ class NetworkLink:
         networks = {robot.robot: network for robot, network in self._networks.items()}
         for messages in sent:
             if messages.robot in networks:
-                self.thread.call(networks[messages.robot].deliver, messages.messages, messages.client)
+                self.servers.call(networks[messages.robot].deliver, messages.messages, messages.client)
 
 
 class _Robot:

@@ -50,6 +50,7 @@ from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.ros.web.tokens import given_tokens
+from thymio_sim_ros.web.thread import ServerThread
 
 __all__ = ["AsebaRuntime", "RuntimeParams", "main"]
 
@@ -81,11 +82,12 @@ class AsebaRuntime:
         simulator: Simulator | None = None,
         tokens: Tokens | None = None,
         is_closed: bool = False,
+        thread: ServerThread | None = None,
     ) -> None:
         """`overrides`: parameter values by name, like those of a command line; `simulator`: in the same process, whose
         engine runs the programs and whose thread runs this node; `tokens`: those that clients of the network servers
         need, None: those of the environment or of parameters; `is_closed`: only this process reaches its parameters,
-        by `control`.
+        by `control`; `thread`: that of a page in the same process, in which the network servers run.
 
         Raises StartError for a parameter or a program that cannot be used.
         """
@@ -106,7 +108,7 @@ class AsebaRuntime:
             self._parameter_services = ParameterService(self.control)
         self._ran_s = 0.0
         try:
-            self._start(defaults or RuntimeParams(), simulator, tokens)
+            self._start(defaults or RuntimeParams(), simulator, tokens, thread)
         except (OptionError, WrongValueError, *ROBOT_ERRORS) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
@@ -145,7 +147,13 @@ class AsebaRuntime:
         self.robots.close()
         self.node.destroy_node()
 
-    def _start(self, defaults: RuntimeParams, simulator: Simulator | None, tokens: Tokens | None) -> None:
+    def _start(
+        self,
+        defaults: RuntimeParams,
+        simulator: Simulator | None,
+        tokens: Tokens | None,
+        thread: ServerThread | None,
+    ) -> None:
         node = self.node
         self.values = RuntimeValues(node, defaults)
         params = self.values.params
@@ -164,7 +172,9 @@ class AsebaRuntime:
         """The servers by which other programs reach the robots, if any is on."""
         if not (settings := params.network.settings).is_off:
             tokens = _tokens(node, settings) if tokens is None else tokens
-            self.network = NetworkLink(node, self.robots, settings, first_id=params.first_id, tokens=tokens)
+            self.network = NetworkLink(
+                node, self.robots, settings, first_id=params.first_id, tokens=tokens, thread=thread
+            )
         wall = Clock(clock_type=ClockType.STEADY_TIME)
         self._variable_timer = VariableTimer(node, wall, self.robots, params.watch_rate)
         self._callbacks = ParameterCallbacks(node, self.values, self.robots, self._variable_timer)

@@ -84,6 +84,11 @@ class NetworkParams:
     http_port: int = param(
         OFF, f"Port of the HTTP interface; that of asebahttp is {HTTP_PORT}", low=OFF, high=65535, fixed=True
     )
+    on_page: tuple[str, ...] = param(
+        ("",),
+        "Servers that are also on the port of a page in the same process: tdm (WebSocket at /tdm), http",
+        fixed=True,
+    )
     allowed_origins: tuple[str, ...] = param(
         ("",), "Origins of additional web pages that may connect, as https://host:port; * allows all", fixed=True
     )
@@ -100,6 +105,7 @@ class NetworkParams:
             tdm_port=settings.tdm_port,
             tdm_ws_port=settings.tdm_ws_port,
             http_port=settings.http_port,
+            on_page=settings.on_page or ("",),
             allowed_origins=settings.allowed_origins or ("",),
             announce=settings.is_announced,
         )
@@ -115,6 +121,7 @@ class NetworkParams:
             tdm_port=self.tdm_port,
             tdm_ws_port=self.tdm_ws_port,
             http_port=self.http_port,
+            on_page=tuple(filter(None, self.on_page)),
             allowed_origins=tuple(filter(None, self.allowed_origins)),
             is_announced=self.announce,
         )

@@ -90,14 +90,14 @@ class FoxgloveBridge:
         defaults: FoxgloveParams | None = None,
         tokens: Tokens | None = None,
         peers: tuple[Node, Node] | None = None,
-        has_page: bool = False,
+        page_thread: ServerThread | None = None,
     ) -> None:
         """Start the server. Raises StartError for invalid parameters or if the port cannot be used.
 
         `tokens` are those of the command line; None: tokens from the environment and parameters, or new ones if the
         address is reachable from the network. `peers` subscribe and publish for clients, where the endpoints of
-        `context` do not match each other; None: the bridge's node does. `has_page`: whether a page serves the bridge on
-        its port, so that it needs none of its own. The other arguments override parameters.
+        `context` do not match each other; None: the bridge's node does. `page_thread`:
+        that of a page, which serves the bridge on its port as well. The other arguments override parameters.
         """
         overrides = [] if use_sim_time is None else [Parameter("use_sim_time", value=use_sim_time)]
         self.node = parameter_node("foxglove_bridge", context=context, parameter_overrides=overrides)
@@ -114,7 +114,7 @@ class FoxgloveBridge:
             )
             self.params = parameters.declare(self.node, values)
             check(self.params)
-            if self.params.port == OFF and not has_page:
+            if self.params.port == OFF and page_thread is None:
                 raise StartError("parameter port: found -1, expected a port, because no page serves the bridge")
             parameters.warn_of_unknown(
                 self.node, "foxglove.md", lambda name: self.node.has_parameter(name) or name in node_tokens.PARAMETERS
@@ -124,10 +124,16 @@ class FoxgloveBridge:
             self._mailbox: Mailbox[ev.Event] = Mailbox(
                 self.node, self._on_event, sender=_sender, weight=lambda event: 1 + (ev.size_of(event) >> 14)
             )
-            self._server = self._open_server()
+            self._thread = page_thread.share() if page_thread else ServerThread(warn=self.node.get_logger().warning)
+            try:
+                self._server = self._open_server()
+            except BaseException:
+                self._thread.close()
+                raise
         except BaseException:
             self.node.destroy_node()
             raise
+        self._is_stopped = False
         self._sim_now_ns = 0
         self._wants_graph = False
         self._is_graph_outdated = True
@@ -170,7 +176,9 @@ class FoxgloveBridge:
     def stop(self) -> None:
         """Stop the server and its thread. The executor must not be spinning any more."""
         self._mailbox.close()
-        self.thread.close()
+        if not self._is_stopped:
+            self._is_stopped = True
+            self._thread.close()
 
     def close(self) -> None:
         """Stop the server, end all endpoints, and destroy the node."""
@@ -182,17 +190,14 @@ class FoxgloveBridge:
         self.node.destroy_node()
 
     def _open_server(self) -> BridgeServer:
-        """Serve on the port of the bridge, in a thread of its own."""
+        """Serve on the port of the bridge, and on that of a page in the same thread."""
         values = self.params
         tls = tls_context(values)
-        self.thread = ServerThread(warn=self.node.get_logger().warning)
-        """The thread of the server, which may serve a page as well."""
         self.address, self.port = values.address, OFF
         try:
             if values.port != OFF:
-                self.address, self.port = self.thread.listen(values.address, values.port, tls)
+                self.address, self.port = self._thread.listen(values.address, values.port, tls)
         except OSError as error:
-            self.thread.close()
             hint = "choose another with --foxglove-port, or -p port:=NUMBER for the node alone"
             raise StartError(f"the Foxglove bridge {error.strerror}; {hint}") from error
         info = ServerInfo(
@@ -210,8 +215,8 @@ class FoxgloveBridge:
             is_read_only_service=allow_list(values.read_only_services),
         )
         board = Switchboard(info, is_read_only_service=settings.is_read_only_service)
-        server = BridgeServer(board, self._mailbox, self.thread.loop, settings)
-        self.thread.mount_bridge(server)
+        server = BridgeServer(board, self._mailbox, self._thread.loop, settings)
+        self._thread.mount_bridge(server)
         return server
 
     def _build(self) -> None:

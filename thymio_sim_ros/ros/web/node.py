@@ -63,13 +63,14 @@ class WebPage:
         context: Context,
         defaults: WebParams | None = None,
         tokens: Tokens | None = None,
-        bridge: ServerThread | None = None,
+        thread: ServerThread | None = None,
     ) -> None:
         """Start the server. Raises StartError if aiohttp is missing or the port cannot be used.
 
         `tokens` of the bridge are part of the printed address; None: those of the environment or of parameters.
-        `bridge`: the thread of a bridge in this process, which then serves the page, and the bridge on the page's port.
+        `thread`: that of other servers of this process, such as the bridge, which are then on the page's port, too.
         """
+        self._is_stopped = False
         self.node = parameter_node("web_ui", context=context)
         try:
             self.params = parameters.declare(self.node, defaults or WebParams())
@@ -79,23 +80,22 @@ class WebPage:
             self.tokens = node_tokens.given_tokens(self.node) if tokens is None else tokens
             if importlib.util.find_spec("aiohttp") is None:
                 raise StartError("the page needs aiohttp: pip install aiohttp, or the system's python3-aiohttp")
-            thread = bridge or ServerThread(warn=self.node.get_logger().warning)
-            self._own_thread = thread if bridge is None else None
+            self._thread = thread.share() if thread else ServerThread(warn=self.node.get_logger().warning)
             try:
-                self._serve(thread)
+                self._serve(has_bridge=thread is not None)
             except BaseException:
-                self.stop()
+                self._thread.close()
                 raise
         except BaseException:
             self.node.destroy_node()
             raise
 
-    def _serve(self, thread: ServerThread) -> None:
+    def _serve(self, *, has_bridge: bool) -> None:
         values = self.params
         page = resources.page()
         if page is None:
             self.node.get_logger().warning(resources.PAGE_BUILD_HINT)
-        foxglove_port = values.foxglove_port if thread is self._own_thread else OFF
+        foxglove_port = OFF if has_bridge else values.foxglove_port
         config: dict[str, str | int] = {"version": thymio_sim_ros.__version__}
         if foxglove_port != OFF:
             config["foxglove_port"] = foxglove_port
@@ -105,14 +105,14 @@ class WebPage:
             allowed_hosts=tuple(name.lower() for name in values.allowed_hosts if name),
         )
         try:
-            self.port = thread.listen(values.address, values.port)[1]
+            self.port = self._thread.listen(values.address, values.port)[1]
         except OSError as error:
             where = f"{values.address}:{values.port}"
             raise StartError(
                 f"the page's port {where} cannot be used: {error.strerror}; "
                 "choose another with --port, or port:=NUMBER of ros2"
             ) from error
-        thread.mount_page(Content(page, json.dumps(config).encode()), settings)
+        self._thread.mount_page(Content(page, json.dumps(config).encode()), settings)
 
     @property
     def startup_message(self) -> str:
@@ -133,9 +133,10 @@ class WebPage:
         executor.spin_once(timeout_sec=SPIN_SLICE_S)
 
     def stop(self) -> None:
-        """Stop the server and its thread; in that of a bridge it ends with the bridge."""
-        if self._own_thread is not None:
-            self._own_thread.close()
+        """Stop the server, with the last node that uses its thread."""
+        if not self._is_stopped:
+            self._is_stopped = True
+            self._thread.close()
 
     def close(self) -> None:
         """Stop the server and destroy the node."""

@@ -329,9 +329,9 @@ def test_a_simulated_robot_behind_a_network_moves_as_one_in_the_process(ros, tmp
 
 def test_a_real_robot_is_a_node_for_other_programs_too(ros, remote_runtime):
     node = remote_runtime(TALK, network=NetworkParams(aseba_port=0, announce=False))
-    ros.until(lambda: node.network.thread.ports, what="the port is open")
+    ros.until(lambda: node.network.servers.ports, what="the port is open")
     pongs = ros.collect(Int16MultiArray, "/aseba/events/pong")
-    with ThreadPoolExecutor(1) as pool, contextlib.closing(AsebaClient(node.network.thread.ports[""])) as client:
+    with ThreadPoolExecutor(1) as pool, contextlib.closing(AsebaClient(node.network.servers.ports[""])) as client:
 
         def work(function, *arguments):
             future = pool.submit(function, *arguments)
