@@ -33,6 +33,7 @@ class SuiteConfig:
         robot: address of a real robot, in place of the simulator; empty for none.
         address: address on which page and bridge listen, `ADDRESS` or an IPv4 address.
         foxglove_port: port of the bridge; `OFF`: none beside that of the page, which serves it as well.
+        certificate, key: PEM files with which page and bridge speak https and wss; empty: http and ws.
         log: file of a run log, empty for none.
         replay: run log whose last run is shown in place of a playground, empty for none.
         replay_from_s: time at which it is paused at first; negative: before its end.
@@ -53,6 +54,8 @@ class SuiteConfig:
     address: str = ADDRESS
     port: int = HTTP_PORT
     foxglove_port: int = FOXGLOVE_PORT
+    certificate: str = ""
+    key: str = ""
     web: bool = True
     foxglove: bool = True
     seed: int = 0

@@ -47,6 +47,13 @@ def test_a_bridge_without_a_port_of_its_own_has_that_of_the_page():
 
 
 @pytest.mark.process
+def test_with_a_certificate():
+    text = banner.banner(SuiteConfig(certificate="cert.pem", tokens=TOKENS), ["thymio"])
+    assert f"Page      https://localhost:8080/#token={TOKENS.full}" in text
+    assert f"Foxglove  wss://localhost:8765/?token={TOKENS.full}" in text
+
+
+@pytest.mark.process
 def test_on_one_address():
     assert "Page      http://10.1.2.3:8080/\n" in banner.banner(SuiteConfig(address="10.1.2.3"), ["thymio"])
 

@@ -29,6 +29,7 @@ def _select(
     add_server_options(parser)
     options = parser.parse_args([*arguments, "--no-aseba"])
     options.address, options.headless = address, headless
+    options.certificate = ""
     options.no_web, options.port = no_web, 8080
     return select_servers(options, 1, Tokens(token))
 

@@ -24,6 +24,7 @@ def servers(*words, address="localhost", tokens=NO_TOKENS, no_web=True):
     add_server_options(parser)
     options = parser.parse_args(["--no-aseba", "--no-tdm", *words])
     options.address, options.headless = address, False
+    options.certificate = ""
     options.no_web, options.port = no_web, 8080
     return select_servers(options, 1, tokens)
 

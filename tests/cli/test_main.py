@@ -18,7 +18,7 @@ from tests import disk
 from tests.patience import PATIENCE_S, until
 from tests.processes import free_port
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
-from thymio_sim_ros.cli import main, suite
+from thymio_sim_ros.cli import main, page_options, suite
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.engine import run_log
 from thymio_sim_ros.engine.replay import replay
@@ -65,6 +65,17 @@ def test_a_broken_playground_is_located(capsys, tmp_path):
     line = refused(capsys, "--playground", str(playground))
     assert "broken.json" in line
     assert "expected" in line
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["--key", "key.pem"], "--key: expected --certificate, too"),
+        (["--certificate", "/no/such.pem"], "--certificate: /no/such.pem: No such file or directory"),
+    ],
+)
+def test_a_certificate_that_cannot_be_used_is_one_line(capsys, words, text):
+    assert text in refused(capsys, *words)
 
 
 def test_a_bridge_without_a_port_of_its_own_needs_the_page(capsys):
@@ -440,7 +451,7 @@ def test_where_tokens_come_from(monkeypatch, arguments, environment, full, read_
     monkeypatch.delenv(READ_ONLY_VARIABLE, raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    tokens = suite._tokens(suite._parser().parse_args(arguments))
+    tokens = page_options.given_tokens(suite._parser().parse_args(arguments))
     for found, expected in ((tokens.full, full), (tokens.read_only, read_only)):
         assert found == expected if expected is not None else len(found) >= 20
 

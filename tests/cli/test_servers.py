@@ -20,6 +20,7 @@ def selected(*words, robots=1, headless=False):
     servers.add_server_options(parser)
     options = parser.parse_args([*words, "--no-tdm"])
     options.headless, options.address = headless, "localhost"
+    options.certificate = ""
     options.no_web, options.port = True, 8080
     return servers.select_servers(options, robots, Tokens())
 

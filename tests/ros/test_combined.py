@@ -9,9 +9,10 @@ import urllib.request
 import pytest
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
-from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.sync.client import connect
 
+from tests.bridge.certificates import make_certificate, trusting
 from tests.patience import PATIENCE_S
 from tests.processes import free_port
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Tokens
@@ -106,6 +107,26 @@ def test_other_servers_are_on_the_port_of_the_page(ros):
         assert isinstance(json.load(nodes), list)
     with urllib.request.urlopen(f"http://localhost:{page.port}/config.json", timeout=PATIENCE_S) as config:
         assert "version" in json.load(config)
+
+
+def test_page_and_bridge_speak_tls_with_a_certificate(ros, tmp_path):
+    cert, key = make_certificate(tmp_path)
+    suite = SuiteConfig(
+        playground="base", program="none", port=0, foxglove_port=free_port(), certificate=str(cert), key=str(key)
+    )
+    _, bridge, page = (ros.live(life) for life in combined.suite_nodes(ros.context, suite))
+    assert f"https://localhost:{page.port}/" in page.startup_message
+    assert f"wss://localhost:{bridge.port}" in bridge.startup_message
+    config = urllib.request.urlopen(
+        f"https://localhost:{page.port}/config.json", timeout=PATIENCE_S, context=trusting(cert)
+    )
+    with config:
+        assert "version" in json.load(config)
+    for port in (page.port, bridge.port):
+        with connect(f"wss://localhost:{port}", subprotocols=SUBPROTOCOLS, ssl=trusting(cert)) as connection:
+            assert connection.subprotocol == SUBPROTOCOLS[0]
+        with pytest.raises(InvalidMessage), connect(f"ws://localhost:{port}"):
+            pass
 
 
 @pytest.mark.parametrize("password", ["", "wrongtoken", "fulltoken"])

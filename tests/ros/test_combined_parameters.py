@@ -14,7 +14,7 @@ from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.suite_config import SuiteConfig
 
 NODES = (SIMULATOR, RUNTIME, BRIDGE, PAGE)
-SHARED = {"cmd_vel_timeout", "port", "foxglove_port", "address", "robot_names"}
+SHARED = {"cmd_vel_timeout", "port", "foxglove_port", "address", "robot_names", "tls", "certfile", "keyfile"}
 """Parameters of more than one node."""
 
 

@@ -11,9 +11,11 @@ import threading
 
 import pytest
 
+from tests.bridge.certificates import make_certificate, trusting
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import connections as places
 from thymio_sim_ros.bridge.connections import Phase
+from thymio_sim_ros.bridge.tls import tls_context
 from thymio_sim_ros.web import Content, ServerThread, Settings
 
 pytestmark = pytest.mark.process
@@ -258,6 +260,23 @@ def test_silent_clients_and_partial_requests_do_not_block_others(serve, warnings
         assert ask(port)[0].status == 200
         assert ask(port, "/assets/index-DGs6OHeF.js")[0].status == 200
     assert len(warnings) <= 1
+
+
+@pytest.mark.parametrize("word", [b"", b"GET / HTTP/1.1\r\n\r\n", b"\x16\x03\x01\x02\x00\x01"])
+def test_clients_without_a_handshake_of_tls_do_not_block_others(folder, warnings, tmp_path, word):
+    cert, key = make_certificate(tmp_path)
+    server = ServerThread(warn=warnings.append, connections=4)
+    server.mount_page(Content(folder, b"{}"), Settings())
+    port = server.listen("localhost", 0, tls_context(str(cert), str(key)))[1]
+    with contextlib.ExitStack() as stack:
+        stack.callback(server.close)
+        for _ in range(6):
+            stack.enter_context(socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S)).sendall(word)
+        connection = http.client.HTTPSConnection("localhost", port, timeout=PATIENCE_S, context=trusting(cert))
+        stack.callback(connection.close)
+        connection.request("GET", "/")
+        assert connection.getresponse().status == 200
+    assert [text for text in warnings if "internal error" in text] == []
 
 
 def test_a_class_that_opens_the_page_at_the_same_time_is_served(serve):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli import foxglove_layout
-from thymio_sim_ros.names.addresses import describe_access, describe_urls, loopback_problem, urls
+from thymio_sim_ros.names.addresses import describe_access, loopback_problem, urls
 from thymio_sim_ros.network.robot_target import parse_target
 from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.suite_config import SuiteConfig
@@ -15,6 +15,7 @@ from thymio_sim_ros.suite_config import SuiteConfig
 __all__ = ["banner", "qr_code", "startup_notice"]
 
 _NONE = "none (started without it)"
+_ON_LINE = ", from other computers "
 _ROBOT_S = 0.1
 """Start time of each robot (measured, docs/performance-method.md)."""
 _LONG_START_S = 5.0
@@ -26,10 +27,9 @@ def banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str] = (
     They contain the tokens: print them on standard output, never in a log.
     """
     tokens = suite.tokens or Tokens()
-    page = describe_urls("http", suite.address, suite.port, "/", tokens.full) if suite.web else _NONE
-    path = "/" if tokens.full else ""
-    foxglove = describe_urls("ws", suite.address, _bridge_port(suite), path, tokens.full) if suite.foxglove else _NONE
-    lines = [f"Page      {page}", f"Foxglove  {foxglove}"]
+    page = _ON_LINE.join(_page_urls(suite, tokens.full)) if suite.web else _NONE
+    bridge = _ON_LINE.join(_bridge_urls(suite, tokens.full)) if suite.foxglove else _NONE
+    lines = [f"Page      {page}", f"Foxglove  {bridge}"]
     if suite.foxglove:
         lines += [f"Read only {url}" for url in _read_only_urls(suite, tokens)]
         lines.append(f"Layout    {foxglove_layout.hint(robots)}")
@@ -53,7 +53,7 @@ def qr_code(suite: SuiteConfig) -> str:
     except ImportError:  # not among the packages of every ROS installation
         return ""
     drawn = io.StringIO()
-    url = urls("http", suite.address, suite.port, "/", tokens.full)[-1]
+    url = _page_urls(suite, tokens.full)[-1]
     segno.make_qr(url, error="l").terminal(drawn, border=2, compact=True)
     return drawn.getvalue().rstrip("\n")
 
@@ -68,9 +68,14 @@ def _read_only_urls(suite: SuiteConfig, tokens: Tokens) -> list[str]:
     """URLs of page and bridge for other computers with the read-only token; empty without such a token."""
     if not tokens.read_only:
         return []
-    page = urls("http", suite.address, suite.port, "/", tokens.read_only)[-1:] if suite.web else []
-    return [*page, urls("ws", suite.address, _bridge_port(suite), "/", tokens.read_only)[-1]]
+    page = _page_urls(suite, tokens.read_only)[-1:] if suite.web else []
+    return [*page, _bridge_urls(suite, tokens.read_only)[-1]]
 
 
-def _bridge_port(suite: SuiteConfig) -> int:
-    return suite.port if suite.foxglove_port == OFF else suite.foxglove_port
+def _page_urls(suite: SuiteConfig, token: str) -> list[str]:
+    return urls("https" if suite.certificate else "http", suite.address, suite.port, "/", token)
+
+
+def _bridge_urls(suite: SuiteConfig, token: str) -> list[str]:
+    port = suite.port if suite.foxglove_port == OFF else suite.foxglove_port
+    return urls("wss" if suite.certificate else "ws", suite.address, port, "/" if token else "", token)

@@ -150,7 +150,8 @@ def _tdm(options: argparse.Namespace, tokens: Tokens, *, has_page: bool) -> tupl
     chosen = options.tdm_port, options.tdm_ws_port
     if options.no_tdm or (options.headless and chosen == (None, None)):
         return OFF, TDM_WS_PORT, ""
-    page = describe_urls("ws", options.address, options.port, TDM_PATH) if has_page else "none"
+    scheme = "wss" if options.certificate else "ws"
+    page = describe_urls(scheme, options.address, options.port, TDM_PATH) if has_page else "none"
     if options.no_tdm_ports:
         if not has_page or chosen != (None, None):
             raise UsageError("--no-tdm-ports: expected a page, and neither --tdm-port nor --tdm-ws-port")
@@ -181,7 +182,8 @@ def _http(options: argparse.Namespace, tokens: Tokens, *, has_page: bool) -> str
         except OSError as error:
             raise UsageError(f"HTTP interface: {error.strerror}; choose another with --http-port") from error
     path = f"/nodes?token={tokens.full}" if tokens.full else "/nodes"
-    return f"HTTP      {describe_urls('http', options.address, options.http_port or options.port, path)}"
+    scheme = "https" if options.certificate and options.http_port is None else "http"
+    return f"HTTP      {describe_urls(scheme, options.address, options.http_port or options.port, path)}"
 
 
 def _origin_argument(text: str) -> str:

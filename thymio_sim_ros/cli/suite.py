@@ -11,8 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import thymio_sim_ros
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens, is_loopback
-from thymio_sim_ros.bridge.listening import check_free
+from thymio_sim_ros.bridge.access import Tokens, is_loopback
 from thymio_sim_ros.cli.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import (
@@ -26,14 +25,15 @@ from thymio_sim_ros.cli.options import (
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
+from thymio_sim_ros.cli.page_options import add_page_options, check_certificate, check_port, given_tokens
 from thymio_sim_ros.cli.ros_graph import add_graph_options, choose_graph, describe_graph
-from thymio_sim_ros.cli.servers import Servers, add_server_options, address_argument, port_argument, select_servers
+from thymio_sim_ros.cli.servers import Servers, select_servers
 from thymio_sim_ros.engine.replay import LoggedRun, last_run
 from thymio_sim_ros.engine.run_log import RunLogError
 from thymio_sim_ros.files.loading import NO_PROGRAM
 from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
 from thymio_sim_ros.network.settings import OFF
-from thymio_sim_ros.suite_config import ADDRESS, OUT_OF_RANGE, SuiteConfig
+from thymio_sim_ros.suite_config import OUT_OF_RANGE, SuiteConfig
 
 __all__ = ["run"]
 
@@ -63,9 +63,9 @@ def run(argv: Sequence[str]) -> int:
         raise UsageError(f"{options.log}: expected a file in a folder that exists")
     robots = _check_robots(suite)
     if suite.web:
-        _check_port(suite.address, suite.port, "the page", "--port")
+        check_port(suite.address, suite.port, "the page", "--port")
     if suite.foxglove and suite.foxglove_port != OFF:
-        _check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
+        check_port(suite.address, suite.foxglove_port, "the Foxglove bridge", "--foxglove-port")
     chosen = select_servers(options, len(robots), suite.tokens or Tokens())
     servers = _without_port_of_robot(chosen, options, suite.robot)
     suite = replace(suite, network=servers.settings)
@@ -134,6 +134,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         raise UsageError(f"--replay: found {excluded}; these come from the run log, expected none of them")
     if options.no_foxglove_port and options.no_web:
         raise UsageError("--no-foxglove-port: found --no-web, expected the port of the page for the bridge")
+    check_certificate(options.certificate, options.key)
     has_none = options.robot or options.replay is not None
     return SuiteConfig(
         playground=options.playground,
@@ -147,6 +148,8 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         address=options.address,
         port=options.port,
         foxglove_port=OFF if options.no_foxglove_port else options.foxglove_port,
+        certificate=options.certificate,
+        key=options.key,
         web=not (options.no_web or options.headless),
         foxglove=not options.headless,
         seed=options.seed,
@@ -154,7 +157,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         log="" if options.log is None else str(options.log),
         replay="" if options.replay is None else str(options.replay),
         replay_from_s=options.replay_from,
-        tokens=_tokens(options),
+        tokens=given_tokens(options),
     )
 
 
@@ -189,7 +192,7 @@ def _parser() -> argparse.ArgumentParser:
         help="a real robot in place of the simulator: tcp:host:port, or ser:device, where ser is the first Thymio that "
         "is plugged in (default program: none)",
     )
-    _add_network_options(parser)
+    add_page_options(parser)
     parser.add_argument(
         "--replay",
         type=path_argument,
@@ -222,85 +225,9 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_network_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--address",
-        type=address_argument,
-        default=SuiteConfig.address,
-        metavar="IPV4",
-        help="address on which page and bridge listen; 0.0.0.0 is the whole network, where clients need the token in "
-        "the printed address (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--token",
-        type=_token_argument,
-        metavar="TEXT",
-        help=f"token that clients need, instead of a random one; other users of this computer can see it in the list "
-        f"of processes, unless it is in the variable {TOKEN_VARIABLE}",
-    )
-    parser.add_argument(
-        "--read-only-token",
-        type=_token_argument,
-        metavar="TEXT",
-        help=f"token with which clients only watch, instead of a random one; or {READ_ONLY_VARIABLE}",
-    )
-    parser.add_argument(
-        "--no-token", action="store_true", help="give full access without a token to all clients that reach the address"
-    )
-    parser.add_argument(
-        "--port", type=port_argument, default=SuiteConfig.port, help="port of the page (default: %(default)s)"
-    )
-    parser.add_argument(
-        "--foxglove-port",
-        type=port_argument,
-        default=SuiteConfig.foxglove_port,
-        help="port of the bridge, as Foxglove expects it (default: %(default)s); the bridge is on the page's port, too",
-    )
-    parser.add_argument("--no-foxglove-port", action="store_true", help="bridge and page on the page's port only")
-    add_server_options(parser)
-    parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
-    parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
-
-
 def _factor_argument(text: str) -> float:
     return number_argument(text, 0.0, 1000.0)
 
 
 def _time_argument(text: str) -> float:
     return number_argument(text, -1e6, 1e6)
-
-
-def _token_argument(text: str) -> str:
-    if not TOKEN.fullmatch(text):
-        raise argparse.ArgumentTypeError("expected 4 to 200 letters, digits, '.', '_', '~' or '-'")
-    return text
-
-
-def _tokens(options: argparse.Namespace) -> Tokens:
-    """Tokens that clients need. Raises UsageError for tokens that contradict each other."""
-    given = options.token, options.read_only_token
-    if options.no_token:
-        if any(given):
-            raise UsageError("--no-token: expected no other option for tokens")
-        return Tokens()
-    full, read_only = given[0] or _token_variable(TOKEN_VARIABLE), given[1] or _token_variable(READ_ONLY_VARIABLE)
-    if full and full == read_only:
-        raise UsageError("the token and the read-only token are the same; expected two different ones")
-    return Tokens.for_address(options.address, full, read_only)
-
-
-def _token_variable(variable: str) -> str:
-    """Token in an environment variable, or "". Raises UsageError without showing the token."""
-    text = os.environ.get(variable, "")
-    try:
-        return _token_argument(text) if text else ""
-    except argparse.ArgumentTypeError as error:
-        raise UsageError(f"{variable}: {error}") from error
-
-
-def _check_port(address: str, port: int, server: str, option: str) -> None:
-    try:
-        check_free(address, port)
-    except OSError as error:
-        options = option if address == ADDRESS else f"{option} or --address"
-        raise UsageError(f"port {port} of {server}: {error.strerror}; choose another with {options}") from error

@@ -79,14 +79,15 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
             network=NetworkParams.of(suite.network),
         ),
     }
+    tls: dict[str, Any] = {"tls": bool(suite.certificate), "certfile": suite.certificate, "keyfile": suite.key}
     if suite.foxglove:
         from thymio_sim_ros.ros.foxglove.options import FoxgloveParams
 
-        values[BRIDGE] = FoxgloveParams(address=suite.address, port=suite.foxglove_port)
+        values[BRIDGE] = FoxgloveParams(address=suite.address, port=suite.foxglove_port, **tls)
     if suite.web:
         from thymio_sim_ros.ros.web.node import WebParams
 
-        values[PAGE] = WebParams(address=suite.address, port=suite.port, foxglove_port=suite.foxglove_port)
+        values[PAGE] = WebParams(address=suite.address, port=suite.port, foxglove_port=suite.foxglove_port, **tls)
     return values
 
 

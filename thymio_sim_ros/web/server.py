@@ -40,8 +40,8 @@ class Page:
         self._pool = ThreadPoolExecutor(2, "page")
 
     async def close(self) -> None:
-        """End the helper threads."""
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        """End the helper threads, which read documents for a moment at most."""
+        self._pool.shutdown(cancel_futures=True)
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""

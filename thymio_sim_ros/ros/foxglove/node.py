@@ -42,7 +42,7 @@ from thymio_sim_ros.ros.foxglove.graph import (
     visible,
     visible_topics,
 )
-from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, check, server_capabilities, tls_context
+from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, check, server_capabilities
 from thymio_sim_ros.ros.foxglove.parameters import Parameters
 from thymio_sim_ros.ros.foxglove.publishers import ClientPublishers
 from thymio_sim_ros.ros.foxglove.rosbridge.host import Host
@@ -58,6 +58,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, a
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.peers import follow_clock
 from thymio_sim_ros.ros.web import tokens as node_tokens
+from thymio_sim_ros.ros.web.tls import given_tls
 from thymio_sim_ros.web import ServerThread
 
 __all__ = ["FoxgloveBridge", "main"]
@@ -192,7 +193,7 @@ class FoxgloveBridge:
     def _open_server(self) -> BridgeServer:
         """Serve on the port of the bridge, and on that of a page in the same thread."""
         values = self.params
-        tls = tls_context(values)
+        tls = given_tls(tls=values.tls, certfile=values.certfile, keyfile=values.keyfile)
         self.address, self.port = values.address, OFF
         try:
             if values.port != OFF:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import ssl
 from dataclasses import dataclass, fields
 
 from thymio_sim_ros.bridge import Capability
@@ -11,8 +10,9 @@ from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.ros.foxglove.assets import ASSETS
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
+from thymio_sim_ros.ros.web.tls import CERTFILE, KEYFILE, TLS
 
-__all__ = ["READ_ONLY_SERVICES", "FoxgloveParams", "check", "server_capabilities", "tls_context"]
+__all__ = ["READ_ONLY_SERVICES", "FoxgloveParams", "check", "server_capabilities"]
 
 READ_ONLY_SERVICES = (
     r"/(.+/)?aseba/(get|list|describe)_variables",
@@ -39,9 +39,9 @@ class FoxgloveParams:
         "Address to listen on: localhost (this computer), 0.0.0.0 (all IPv4 interfaces), :: (also IPv6)",
         fixed=True,
     )
-    tls: bool = param(False, "Serve wss:// with certfile and keyfile", fixed=True)
-    certfile: str = param("", "PEM file with the certificate chain", fixed=True)
-    keyfile: str = param("", "PEM file with the private key", fixed=True)
+    tls: bool = TLS
+    certfile: str = CERTFILE
+    keyfile: str = KEYFILE
     allowed_origins: tuple[str, ...] = param(
         ("",),
         "Origins of additional web pages that may connect, as https://host:port; * allows all",
@@ -91,20 +91,6 @@ class FoxgloveParams:
     max_message_size: int = param(
         4 << 20, "Longest frame accepted from a client, bytes", low=1 << 10, high=1 << 28, fixed=True
     )
-
-
-def tls_context(values: FoxgloveParams) -> ssl.SSLContext | None:
-    """The TLS context for wss://, None for ws://. Raises StartError if the files cannot be used."""
-    if not values.tls:
-        return None
-    if not values.certfile:
-        raise StartError("parameter tls: no certificate given; set certfile and keyfile to PEM files")
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    try:
-        context.load_cert_chain(values.certfile, values.keyfile or None)
-    except OSError as error:
-        raise StartError(f"the certificate {values.certfile!r} cannot be used: {error.strerror or error}") from error
-    return context
 
 
 def server_capabilities(values: FoxgloveParams, *, uses_sim_time: bool) -> tuple[Capability, ...]:

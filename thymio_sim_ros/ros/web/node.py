@@ -28,6 +28,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, a
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
 from thymio_sim_ros.ros.web import tokens as node_tokens
+from thymio_sim_ros.ros.web.tls import CERTFILE, KEYFILE, TLS, given_tls
 from thymio_sim_ros.suite_config import ADDRESS
 from thymio_sim_ros.web import Content, ServerThread, Settings
 
@@ -45,6 +46,9 @@ class WebParams:
         high=65535,
         fixed=True,
     )
+    tls: bool = TLS
+    certfile: str = CERTFILE
+    keyfile: str = KEYFILE
     allowed_hosts: list[str] = param(
         [""], "Additional host names under which a page on loopback may be opened", fixed=True
     )
@@ -92,6 +96,7 @@ class WebPage:
 
     def _serve(self, *, has_bridge: bool) -> None:
         values = self.params
+        tls = given_tls(tls=values.tls, certfile=values.certfile, keyfile=values.keyfile)
         page = resources.page()
         if page is None:
             self.node.get_logger().warning(resources.PAGE_BUILD_HINT)
@@ -105,7 +110,7 @@ class WebPage:
             allowed_hosts=tuple(name.lower() for name in values.allowed_hosts if name),
         )
         try:
-            self.port = self._thread.listen(values.address, values.port)[1]
+            self.port = self._thread.listen(values.address, values.port, tls)[1]
         except OSError as error:
             where = f"{values.address}:{values.port}"
             raise StartError(
@@ -115,16 +120,20 @@ class WebPage:
         self._thread.mount_page(Content(page, json.dumps(config).encode()), settings)
 
     @property
+    def _scheme(self) -> str:
+        return "https" if self.params.tls else "http"
+
+    @property
     def startup_message(self) -> str:
         """Addresses of the page, as text for the log."""
-        return f"Page: {describe_urls('http', self.params.address, self.port, '/')}"
+        return f"Page: {describe_urls(self._scheme, self.params.address, self.port, '/')}"
 
     @property
     def access_urls(self) -> str:
         """Addresses with their tokens, for standard output; not for the log, which clients can read."""
         if not self.tokens.is_required:
             return ""
-        place = "http", self.params.address, self.port, "/"
+        place = self._scheme, self.params.address, self.port, "/"
         full, read_only = (describe_urls(*place, token) for token in (self.tokens.full, self.tokens.read_only))
         return f"Page      {full}\nRead only {read_only}"
 
