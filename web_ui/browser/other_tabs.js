@@ -1,5 +1,7 @@
 // Other tabs of this browser in which this page is open: they share its storage.
 
+import { nameHere } from "./local_storage.js";
+
 const CHANNEL = "thymio-editor";
 
 /**
@@ -9,7 +11,7 @@ const CHANNEL = "thymio-editor";
  * @param {(name: string) => Pick<BroadcastChannel, "postMessage" | "onmessage">} [open]
  */
 export function meetOtherTabs(met, open = (name) => new BroadcastChannel(name)) {
-  const channel = open(CHANNEL);
+  const channel = open(nameHere(CHANNEL));
   channel.onmessage = ({ data }) => {
     if (data === "opened") channel.postMessage("here");
     met();

@@ -7,7 +7,7 @@
 // which one: a picture or blocks in it belong to their language, every other file is text.
 
 import { BLOCKS, looksLikeBlocks } from "../blockly/language.js";
-import { localStore } from "../browser/local_storage.js";
+import { followLocalStore, localStore } from "../browser/local_storage.js";
 import { meetOtherTabs, openPages } from "../browser/other_tabs.js";
 import { textOf } from "../browser/text_file.js";
 import { looksLikeToolbox } from "../editor/toolbox_file.js";
@@ -212,7 +212,7 @@ export class ProgramHost {
       const session = new module.EditorSession(localStore, Date.now, openPages(navigator.locks));
       this.session = session;
       session.onWritten = (text) => this.#sendDraft(text);
-      addEventListener("storage", ({ key }) => session.workspace.storageChanged(key));
+      followLocalStore((key) => session.workspace.storageChanged(key));
       meetOtherTabs(() => {
         const { store, text } = /** @type {Context} */ (this.context);
         store.dispatch({ type: "notice", level: "warning", text: text("program")("program.otherTab") });

@@ -16,6 +16,15 @@ function place(element, isBuilding) {
   else document.querySelector("#tabs")?.after(element);
 }
 
+/** Whether a link leads to a page of the web; it may be relative to this page. @param {string} address  "": none */
+function isWebAddress(address) {
+  try {
+    return address !== "" && /^https?:$/.test(new URL(address, location.href).protocol);
+  } catch {
+    return false;
+  }
+}
+
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function teacherNotePanel({ text, announce, scene, creator }) {
   const pageText = text("page");
@@ -47,7 +56,7 @@ export function teacherNotePanel({ text, announce, scene, creator }) {
       element.hidden = said === "" || key === hiddenNote;
       place(element, creator.isOpen);
       setText(words, said);
-      link.hidden = !/^https?:\/\//.test(address);
+      link.hidden = !isWebAddress(address);
       if (!link.hidden) setAttribute(link, "href", address);
       if (said !== announced) {
         announced = said;
