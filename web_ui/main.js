@@ -32,7 +32,7 @@ import { DragController } from "./move/drag_controller.js";
 import { fetchShapes } from "./playground/declarations.js";
 import { registerShapes } from "./playground/kinds/index.js";
 import { ThumbnailCache } from "./playground_tab/thumbnail_cache.js";
-import { bridgeAddress } from "./protocol/bridge_address.js";
+import { bridgeAddress, isServed } from "./protocol/bridge_address.js";
 import { Client } from "./protocol/client.js";
 import { SceneView } from "./scene/index.js";
 import { fillBottomBar } from "./shell/bottom_bar.js";
@@ -207,6 +207,7 @@ class Page {
         PARAMETERS.pupil,
         PARAMETERS.pausedByTeacher,
       ],
+      isServed,
     });
   }
 

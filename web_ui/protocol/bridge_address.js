@@ -1,4 +1,4 @@
-// Finds the WebSocket server that this page talks to.
+// The WebSocket server that this page talks to.
 
 /** The address of the bridge: that of the page, with its path, or another port of its host that the page's server names. */
 export async function bridgeAddress() {
@@ -16,4 +16,13 @@ export function addressBeside(page, port) {
   address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
   if (port !== undefined) address.port = String(port);
   return address.href;
+}
+
+/** Whether the server of the page answers. */
+export async function isServed() {
+  try {
+    return (await fetch("config.json", { cache: "no-store" })).ok;
+  } catch {
+    return false;
+  }
 }

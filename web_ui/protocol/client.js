@@ -1,5 +1,8 @@
 // The WebSocket of a `Session`: connects, and reconnects every second. If the server requires another token,
 // it stops reconnecting.
+//
+// Browsers do not say why a WebSocket does not open. If the server of the page answers all the while, several times, it
+// is something in between that passes HTTP only, such as a proxy without the upgrade.
 
 import { Session, SUBPROTOCOLS } from "./session.js";
 
@@ -8,10 +11,13 @@ import { Session, SUBPROTOCOLS } from "./session.js";
 /** @typedef {import("./session.js").ParameterAnswer} ParameterAnswer */
 /**
  * @typedef {SessionEvent | { type: "connecting", address: string } | { type: "connected" }
- *   | { type: "disconnected" } | { type: "refused", withToken: boolean }} ClientEvent
+ *   | { type: "disconnected", isBlocked: boolean } | { type: "refused", withToken: boolean }} ClientEvent
  */
 
 const RETRY_MS = 1000;
+
+/** Attempts after which a connection counts as blocked; a server may start between an attempt and a request. */
+const BLOCKED_ATTEMPTS = 3;
 
 /** Close code of a server that requires a token, or another one. */
 export const WRONG_TOKEN = 4401;
@@ -25,14 +31,18 @@ export class Client {
    * @param {(topic: string) => boolean} options.wants
    * @param {(topic: string) => number} options.urgency   topics with a smaller number are subscribed to first
    * @param {string[]} options.parameters
+   * @param {() => Promise<boolean>} options.isServed     whether the server of the page answers
    */
-  constructor({ address, token = "", emit, wants, urgency, parameters }) {
+  constructor({ address, token = "", emit, wants, urgency, parameters, isServed }) {
     this.address = address;
     this.token = token;
     this.emit = emit;
     this.wants = wants;
     this.urgency = urgency;
     this.parameters = parameters;
+    this.isServed = isServed;
+    /** Attempts in a row that have failed although the server answers. */
+    this.blocked = 0;
     /** @type {Session | null} */ this.session = null;
   }
 
@@ -43,6 +53,7 @@ export class Client {
     const socket = new WebSocket(this.address + query, SUBPROTOCOLS);
     socket.binaryType = "arraybuffer";
     socket.addEventListener("open", () => {
+      this.blocked = 0;
       this.session = new Session({
         send: (data) => socket.send(/** @type {string | BufferSource} */ (data)),
         emit: this.emit,
@@ -53,10 +64,11 @@ export class Client {
       this.emit({ type: "connected" });
     });
     socket.addEventListener("message", ({ data }) => this.session?.receive(data));
-    socket.addEventListener("close", ({ code }) => {
+    socket.addEventListener("close", async ({ code }) => {
+      if (this.session === null) this.blocked = (await this.isServed()) ? this.blocked + 1 : 0;
       this.session?.close();
       this.session = null;
-      this.emit({ type: "disconnected" });
+      this.emit({ type: "disconnected", isBlocked: this.blocked >= BLOCKED_ATTEMPTS });
       if (code === WRONG_TOKEN) return this.emit({ type: "refused", withToken: this.token !== "" });
       setTimeout(() => this.start(), RETRY_MS);
     });

@@ -51,7 +51,7 @@ import { applyTransforms } from "./transforms.js";
  */
 /**
  * @typedef {object} State
- * @property {"connecting" | "connected" | "lost" | "noToken" | "wrongToken"} connection
+ * @property {"connecting" | "connected" | "lost" | "blocked" | "noToken" | "wrongToken"} connection
  * @property {boolean} readOnly   whether the server restricts this page to read-only access
  * @property {boolean} identified    whether the server of this connection has identified itself
  * @property {string} server
@@ -77,7 +77,7 @@ import { applyTransforms } from "./transforms.js";
  */
 
 /**
- * @typedef {{ type: "connecting", address: string } | { type: "connected" } | { type: "disconnected" }
+ * @typedef {{ type: "connecting", address: string } | { type: "connected" } | { type: "disconnected", isBlocked?: boolean }
  *   | { type: "refused", withToken: boolean }
  *   | { type: "serverInfo", name: string, sessionId: string, capabilities: string[], readOnly?: boolean }
  *   | { type: "channels", topics: string[] }
@@ -145,10 +145,10 @@ export function reduce(state, message) {
 
 /** One row per kind of message. */
 const STEPS = /** @type {Record<string, (state: State, message: any) => State>} */ ({
-  connecting: (state) => ({ ...state, connection: state.connection === "lost" ? "lost" : "connecting" }),
+  connecting: (state) => (["lost", "blocked"].includes(state.connection) ? state : { ...state, connection: "connecting" }),
   connected: (state) =>
     withoutNotices({ ...state, connection: "connected", identified: false, services: [], topics: [] }, [CONNECTION]),
-  disconnected: (state) => ({ ...state, connection: "lost" }),
+  disconnected: (state, { isBlocked = false }) => ({ ...state, connection: isBlocked ? "blocked" : "lost" }),
   refused: (state, { withToken }) => ({ ...state, connection: withToken ? "wrongToken" : "noToken" }),
   serverInfo(state, { name, sessionId, readOnly = false }) {
     const known = { ...state, identified: true, server: name, sessionId, readOnly };
