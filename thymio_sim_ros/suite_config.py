@@ -40,6 +40,7 @@ class SuiteConfig:
         cmd_vel_timeout_s: time after which a velocity ends; short, because teleoperation in the browser sends nothing
             on release (docs/spec/ros-interface.md section 13).
         tokens: tokens that clients of page and bridge need; None lets the bridge choose.
+        trusted_proxies: addresses and networks of reverse proxies in front of page and bridge.
         network: servers by which other programs reach the robots; none by default.
     """
 
@@ -65,4 +66,5 @@ class SuiteConfig:
     real_time_factor: float = 1.0
     cmd_vel_timeout_s: float = 0.5
     tokens: Tokens | None = None
+    trusted_proxies: tuple[str, ...] = ()
     network: NetworkSettings = NO_SERVERS

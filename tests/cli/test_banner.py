@@ -120,6 +120,12 @@ def test_one_line_describes_the_access(address, tokens, expected):
     )
 
 
+@pytest.mark.process
+def test_the_access_behind_a_proxy_is_that_of_its_visitors():
+    suite = SuiteConfig(tokens=TOKENS, trusted_proxies=("127.0.0.1",))
+    assert "Access    everyone who reaches the proxy with a full address: drive" in banner.banner(suite, ["thymio"])
+
+
 def test_the_qr_code_holds_the_address_for_other_computers(monkeypatch):
     monkeypatch.setattr(addresses, "own_address", lambda: "10.1.2.3")
     suite = SuiteConfig(address="0.0.0.0", port=80, tokens=TOKENS)

@@ -14,7 +14,10 @@ from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.suite_config import SuiteConfig
 
 NODES = (SIMULATOR, RUNTIME, BRIDGE, PAGE)
-SHARED = {"cmd_vel_timeout", "port", "foxglove_port", "address", "robot_names", "tls", "certfile", "keyfile"}
+SHARED = {
+    *("address", "cmd_vel_timeout", "foxglove_port", "port", "robot_names"),
+    *("certfile", "keyfile", "tls", "trusted_proxies"),
+}
 """Parameters of more than one node."""
 
 

@@ -7,6 +7,7 @@
     server                         clients around the switchboard, without sockets; settings has their limits
     websocket                      one client on a WebSocket of aiohttp; client_send_queue: messages for it
     handshake                      who may connect, by access (tokens) and origin_policy (web pages)
+    visitor                        who has sent a request, behind proxies that are trusted
     connections, throttle          limits of connections, and of the time of busy clients
     listening                      listening sockets of all servers
 

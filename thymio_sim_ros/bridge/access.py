@@ -80,9 +80,9 @@ class Tokens:
         return None if self.is_required else Role.FULL
 
     @classmethod
-    def for_address(cls, address: str, full: str = "", read_only: str = "") -> Tokens:
-        """The given tokens; random ones replace empty ones if the address is reachable from the network."""
-        if full or not is_loopback(address):
+    def for_address(cls, address: str, full: str = "", read_only: str = "", *, is_proxied: bool = False) -> Tokens:
+        """The given tokens; random ones replace empty ones if others reach the address, by network or by a proxy."""
+        if full or is_proxied or not is_loopback(address):
             return cls(full or new_token(), read_only or new_token())
         return cls("", read_only)
 

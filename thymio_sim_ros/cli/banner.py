@@ -33,7 +33,7 @@ def banner(suite: SuiteConfig, robots: Sequence[str], servers: Sequence[str] = (
     if suite.foxglove:
         lines += [f"Read only {url}" for url in _read_only_urls(suite, tokens)]
         lines.append(f"Layout    {foxglove_layout.hint(robots)}")
-        lines.append(f"Access    {describe_access(suite.address, tokens)}")
+        lines.append(f"Access    {describe_access(suite.address, tokens, is_proxied=bool(suite.trusted_proxies))}")
     lines += servers
     problem = loopback_problem()
     if problem:

@@ -8,11 +8,12 @@ import os
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
 from thymio_sim_ros.bridge.listening import check_free
 from thymio_sim_ros.bridge.tls import TlsError, tls_context
+from thymio_sim_ros.bridge.visitor import ProxyError, TrustedProxies
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.servers import add_server_options, address_argument, port_argument
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
-__all__ = ["add_page_options", "check_certificate", "check_port", "given_tokens"]
+__all__ = ["add_page_options", "add_proxy_option", "check_certificate", "check_port", "given_tokens"]
 
 
 def add_page_options(parser: argparse.ArgumentParser) -> None:
@@ -60,9 +61,31 @@ def add_page_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--key", default=SuiteConfig.key, metavar="FILE", help="PEM file with its private key, unless the first has it"
     )
+    add_proxy_option(parser)
     add_server_options(parser)
     parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
     parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
+
+
+def add_proxy_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option for reverse proxies."""
+    parser.add_argument(
+        "--trusted-proxy",
+        action="append",
+        type=_proxy_argument,
+        default=[],
+        metavar="ADDRESS|NETWORK",
+        help="a reverse proxy, such as 127.0.0.1 or 10.1.0.0/16, whose headers X-Forwarded-For, -Proto, -Host and "
+        "-Prefix are believed (docs/serve-a-school.md); repeat it for several",
+    )
+
+
+def _proxy_argument(text: str) -> str:
+    try:
+        TrustedProxies([text])
+    except ProxyError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+    return text
 
 
 def _token_argument(text: str) -> str:
@@ -81,7 +104,7 @@ def given_tokens(options: argparse.Namespace) -> Tokens:
     full, read_only = given[0] or _token_variable(TOKEN_VARIABLE), given[1] or _token_variable(READ_ONLY_VARIABLE)
     if full and full == read_only:
         raise UsageError("the token and the read-only token are the same; expected two different ones")
-    return Tokens.for_address(options.address, full, read_only)
+    return Tokens.for_address(options.address, full, read_only, is_proxied=bool(options.trusted_proxy))
 
 
 def _token_variable(variable: str) -> str:

@@ -26,7 +26,13 @@ from thymio_sim_ros.network.settings import (
 )
 from thymio_sim_ros.suite_config import ADDRESS
 
-__all__ = ["Servers", "add_server_options", "address_argument", "port_argument", "select_servers"]
+__all__ = [
+    "Servers",
+    "add_server_options",
+    "address_argument",
+    "port_argument",
+    "select_servers",
+]
 
 _ORIGIN = re.compile(r"https?://[^/?#\s]+")
 

@@ -158,6 +158,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         replay="" if options.replay is None else str(options.replay),
         replay_from_s=options.replay_from,
         tokens=given_tokens(options),
+        trusted_proxies=tuple(options.trusted_proxy),
     )
 
 

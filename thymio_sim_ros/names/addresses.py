@@ -61,11 +61,12 @@ def describe_urls(scheme: str, address: str, port: int, path: str = "", token: s
     return ", from other computers ".join(urls(scheme, address, port, path, token))
 
 
-def describe_access(address: str, tokens: Tokens) -> str:
-    """One line on the computers that reach a server and what they may do."""
-    if is_loopback(address):
+def describe_access(address: str, tokens: Tokens, *, is_proxied: bool = False) -> str:
+    """One line on the computers that reach a server, perhaps by a proxy, and what they may do."""
+    if is_loopback(address) and not is_proxied:
         return f"this computer only{', with the token' if tokens.is_required else ''}"
+    everyone = "everyone who reaches the proxy" if is_proxied else "everyone in your network"
     if not tokens.is_required:
-        return "everyone in your network, without a token: drive, program, load, add robots"
-    everything = "everyone in your network with a full address: drive, program, load, add robots"
+        return f"{everyone}, without a token: drive, program, load, add robots"
+    everything = f"{everyone} with a full address: drive, program, load, add robots"
     return f"{everything}; with a read-only address: watch"

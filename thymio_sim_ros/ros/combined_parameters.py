@@ -79,15 +79,16 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
             network=NetworkParams.of(suite.network),
         ),
     }
-    tls: dict[str, Any] = {"tls": bool(suite.certificate), "certfile": suite.certificate, "keyfile": suite.key}
+    both: dict[str, Any] = {"tls": bool(suite.certificate), "certfile": suite.certificate, "keyfile": suite.key}
+    both |= {"address": suite.address, "trusted_proxies": suite.trusted_proxies or ("",)}
     if suite.foxglove:
         from thymio_sim_ros.ros.foxglove.options import FoxgloveParams
 
-        values[BRIDGE] = FoxgloveParams(address=suite.address, port=suite.foxglove_port, **tls)
+        values[BRIDGE] = FoxgloveParams(port=suite.foxglove_port, **both)
     if suite.web:
         from thymio_sim_ros.ros.web.node import WebParams
 
-        values[PAGE] = WebParams(address=suite.address, port=suite.port, foxglove_port=suite.foxglove_port, **tls)
+        values[PAGE] = WebParams(port=suite.port, foxglove_port=suite.foxglove_port, **both)
     return values
 
 

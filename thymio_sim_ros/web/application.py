@@ -9,6 +9,8 @@ from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING
 
 from thymio_sim_ros.bridge.handshake import RefusedError
+from thymio_sim_ros.bridge.visitor import NO_PROXIES
+from thymio_sim_ros.web.forwarded import as_sent, visitor_of
 from thymio_sim_ros.web.http_connections import start_answer, text_response
 
 if TYPE_CHECKING:
@@ -23,6 +25,8 @@ class Application:
     """Passes requests on. Only for the thread of the event loop."""
 
     def __init__(self) -> None:
+        self.trusted_proxies = NO_PROXIES
+        """The proxies in front of the ports."""
         self.websockets: dict[str, Handler] = {}
         """Servers of WebSockets by path. They raise RefusedError for an invalid handshake."""
         self.interfaces: list[tuple[Callable[[str], bool], Handler]] = []
@@ -32,6 +36,7 @@ class Application:
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
+        request = as_sent(request, visitor_of(request, self.trusted_proxies))
         path = request.raw_path.partition("?")[0]
         is_websocket = request.headers.get("Upgrade", "").lower() == "websocket"
         if not is_websocket:

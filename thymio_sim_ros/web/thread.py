@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.report_limiter import ReportLimiter
+from thymio_sim_ros.bridge.visitor import TrustedProxies
 from thymio_sim_ros.web.content import Content
 from thymio_sim_ros.web.settings import Settings, max_connections
 
@@ -63,6 +64,15 @@ class ServerThread:
         with self._lock:
             self._users += 1
         return self
+
+    def trust(self, proxies: TrustedProxies) -> None:
+        """Believe these proxies on all ports of `listen`; none changes nothing."""
+
+        def trust() -> None:
+            self.application.trusted_proxies = proxies
+
+        if proxies:
+            self.call(trust)
 
     def listen(self, address: str, port: int, tls: ssl.SSLContext | None = None) -> tuple[str, int]:
         """Serve on a port; return the numeric address and the actual port. Raises OSError if it cannot be bound."""

@@ -58,6 +58,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, a
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.peers import follow_clock
 from thymio_sim_ros.ros.web import tokens as node_tokens
+from thymio_sim_ros.ros.web.proxies import trusted_proxies
 from thymio_sim_ros.ros.web.tls import given_tls
 from thymio_sim_ros.web import ServerThread
 
@@ -120,6 +121,7 @@ class FoxgloveBridge:
             parameters.warn_of_unknown(
                 self.node, "foxglove.md", lambda name: self.node.has_parameter(name) or name in node_tokens.PARAMETERS
             )
+            self._trusted_proxies = trusted_proxies(self.params.trusted_proxies)
             self.tokens = self._own_tokens() if tokens is None else tokens
             self._uses_sim_time = bool(self.node.get_parameter("use_sim_time").value)
             self._mailbox: Mailbox[ev.Event] = Mailbox(
@@ -127,6 +129,7 @@ class FoxgloveBridge:
             )
             self._thread = page_thread.share() if page_thread else ServerThread(warn=self.node.get_logger().warning)
             try:
+                self._thread.trust(self._trusted_proxies)
                 self._server = self._open_server()
             except BaseException:
                 self._thread.close()
@@ -145,10 +148,10 @@ class FoxgloveBridge:
         """Addresses for clients, as text for the log."""
         place = self._scheme, self.address, self.port
         if self.port == OFF:
-            return f"Foxglove: on the port of the page; access: {describe_access(self.address, self.tokens)}"
+            return f"Foxglove: on the port of the page; access: {self._access}"
         is_open = not self.tokens.is_required
         how = f"or {_app_link(urls(*place)[0])}" if is_open else "with the token on standard output"
-        return f"Foxglove: {describe_urls(*place)} {how}; access: {describe_access(self.address, self.tokens)}"
+        return f"Foxglove: {describe_urls(*place)} {how}; access: {self._access}"
 
     @property
     def access_urls(self) -> str:
@@ -161,6 +164,10 @@ class FoxgloveBridge:
         return f"Foxglove  {', from other computers '.join(full)} or {_app_link(full[0])}\nRead only {read_only}"
 
     @property
+    def _access(self) -> str:
+        return describe_access(self.address, self.tokens, is_proxied=bool(self._trusted_proxies))
+
+    @property
     def _scheme(self) -> str:
         return "wss" if self.params.tls else "ws"
 
@@ -168,7 +175,8 @@ class FoxgloveBridge:
         given = node_tokens.given_tokens(self.node)
         if not self.params.require_token:
             return Tokens()
-        return Tokens.for_address(self.params.address, given.full, given.read_only)
+        is_proxied = bool(self._trusted_proxies)
+        return Tokens.for_address(self.params.address, given.full, given.read_only, is_proxied=is_proxied)
 
     def run_once(self, executor: Executor) -> None:
         """Spin the executor once; returns after `SPIN_SLICE_S` at the latest."""

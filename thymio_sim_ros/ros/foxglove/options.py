@@ -47,6 +47,11 @@ class FoxgloveParams:
         "Origins of additional web pages that may connect, as https://host:port; * allows all",
         fixed=True,
     )
+    trusted_proxies: tuple[str, ...] = param(
+        ("",),
+        "Addresses and networks of reverse proxies whose headers X-Forwarded-* are believed, also those of the page",
+        fixed=True,
+    )
     require_token: bool = param(
         True, "Whether clients need a token if the address is reachable from the network (SECURITY.md)", fixed=True
     )

@@ -28,6 +28,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, a
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.rclpy_ext.parameters import param
 from thymio_sim_ros.ros.web import tokens as node_tokens
+from thymio_sim_ros.ros.web.proxies import trusted_proxies
 from thymio_sim_ros.ros.web.tls import CERTFILE, KEYFILE, TLS, given_tls
 from thymio_sim_ros.suite_config import ADDRESS
 from thymio_sim_ros.web import Content, ServerThread, Settings
@@ -52,8 +53,13 @@ class WebParams:
     allowed_hosts: list[str] = param(
         [""], "Additional host names under which a page on loopback may be opened", fixed=True
     )
+    trusted_proxies: tuple[str, ...] = param(
+        ("",),
+        "Addresses and networks of reverse proxies whose headers X-Forwarded-* are believed",
+        fixed=True,
+    )
     notice: str = param("", "Text that the page shows to its readers until it is empty, as from a teacher")
-    notice_link: str = param("", "Address that the page offers with the notice; only http and https")
+    notice_link: str = param("", "Address that the page offers with the notice, also relative to the page")
     pupil: str = param("", "Name of the pupil whose page this is, which the page shows")
     paused_by_teacher: bool = param(False, "Whether a teacher has paused time: the page locks its time controls")
     draft: str = param("", "Text that the page of a pupil has in its editor, as an .aesl file")
@@ -84,7 +90,9 @@ class WebPage:
             self.tokens = node_tokens.given_tokens(self.node) if tokens is None else tokens
             if importlib.util.find_spec("aiohttp") is None:
                 raise StartError("the page needs aiohttp: pip install aiohttp, or the system's python3-aiohttp")
+            self._trusted_proxies = trusted_proxies(self.params.trusted_proxies)
             self._thread = thread.share() if thread else ServerThread(warn=self.node.get_logger().warning)
+            self._thread.trust(self._trusted_proxies)
             try:
                 self._serve(has_bridge=thread is not None)
             except BaseException:
@@ -106,7 +114,7 @@ class WebPage:
             config["foxglove_port"] = foxglove_port
         settings = Settings(
             foxglove_port,
-            is_loopback=is_loopback(values.address),
+            is_loopback=is_loopback(values.address) and not self._trusted_proxies,
             allowed_hosts=tuple(name.lower() for name in values.allowed_hosts if name),
         )
         try:

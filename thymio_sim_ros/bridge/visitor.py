@@ -1,0 +1,133 @@
+"""The visitor behind a request: address and URL, as reverse proxies report them.
+
+A proxy in front of a server hides who asks and under which address: it says so in the headers `X-Forwarded-For`,
+`-Proto`, `-Host` and `-Prefix`. Any client can send these headers, therefore they count only from proxies that are
+named at the start. Pure: without sockets.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from thymio_sim_ros.errors import ThymioSimError
+
+__all__ = ["FORWARDED", "NO_PROXIES", "ProxyError", "TrustedProxies", "Visitor"]
+
+FORWARDED = "x-forwarded-"
+"""Beginning of the headers' names in lower case."""
+
+_HOST = re.compile(r"(?:[A-Za-z0-9_.-]{1,253}|\[[0-9A-Fa-f:.]{2,45}\])(?::\d{1,5})?")
+_PREFIX = re.compile(r"(?:/(?!\.{1,2}(?:/|$))[A-Za-z0-9._~-]{1,100}){1,20}/?")
+_SCHEMES = ("http", "https")
+
+Network = ipaddress.IPv4Network | ipaddress.IPv6Network
+Address = ipaddress.IPv4Address | ipaddress.IPv6Address
+
+
+class ProxyError(ThymioSimError, ValueError):
+    """A value that names no proxy; the text says what was found and expected."""
+
+
+@dataclass(frozen=True, slots=True)
+class Visitor:
+    """Where a request comes from, and the URL under which the visitor sees this server."""
+
+    address: str
+    """Numeric address, "" if it is unknown."""
+    host: str | None
+    """Name and port as in a Host header, None without a valid one."""
+    scheme: str = "http"
+    prefix: str = ""
+    """Path of the server: "" or such as `/lab/thymio`."""
+    is_proxied: bool = False
+    """Whether a trusted proxy has passed the request on."""
+
+    @property
+    def url(self) -> str | None:
+        """URL of the server with a slash at its end, None without a host."""
+        return None if self.host is None else f"{self.scheme}://{self.host}{self.prefix}/"
+
+
+class TrustedProxies:
+    """The proxies whose headers are believed."""
+
+    def __init__(self, networks: Iterable[str] = ()) -> None:
+        """`networks` are addresses and networks, such as `127.0.0.1` and `10.0.0.0/8`. Raises ProxyError."""
+        self._networks = tuple(map(_network, networks))
+
+    def __bool__(self) -> bool:
+        """Whether there is one."""
+        return bool(self._networks)
+
+    def visitor(self, peer: str, values: Callable[[str], Sequence[str]], *, scheme: str = "http") -> Visitor:
+        """The visitor of a request that has arrived from the address `peer` by `scheme`.
+
+        `values` returns the values of a header by its name, none if it was not sent.
+        """
+        host = _matching(_HOST, _last(values("Host")))
+        if not self._is_trusted(_address(peer)):
+            return Visitor(peer, host, scheme)
+        given = _last(values("X-Forwarded-Proto")).lower()
+        return Visitor(
+            self._origin(peer, ",".join(values("X-Forwarded-For"))),
+            _matching(_HOST, _last(values("X-Forwarded-Host"))) or host,
+            given if given in _SCHEMES else scheme,
+            (_matching(_PREFIX, _last(values("X-Forwarded-Prefix"))) or "").rstrip("/"),
+            is_proxied=True,
+        )
+
+    def _origin(self, peer: str, chain: str) -> str:
+        """The nearest address that is no trusted proxy: those before it are claims of that client."""
+        nearest = peer
+        for part in reversed(chain.split(",")):
+            address = _address(part.strip())
+            if address is None:
+                break
+            nearest = str(address)
+            if not self._is_trusted(address):
+                break
+        return nearest
+
+    def _is_trusted(self, address: Address | None) -> bool:
+        return address is not None and any(address in network for network in self._networks)
+
+
+def _network(text: str) -> Network:
+    try:
+        network = ipaddress.ip_network(text)
+    except ValueError as error:
+        reason = f" ({error})" if "host bits" in str(error) else ""
+        raise ProxyError(
+            f"'{text}' found{reason}, expected the numeric address or network of a proxy, such as 127.0.0.1 or "
+            "10.1.0.0/16"
+        ) from error
+    if network.prefixlen == 0:
+        raise ProxyError(f"'{text}' found, which is every computer; expected the address of the proxy")
+    return network
+
+
+def _address(text: str) -> Address | None:
+    """An address, also with a port as some proxies send it; None for anything else."""
+    bare = text[1:].partition("]")[0] if text.startswith("[") else text.partition(":")[0] if "." in text else text
+    for candidate in (text, bare):
+        try:
+            address = ipaddress.ip_address(candidate.partition("%")[0])
+        except ValueError:
+            continue
+        return (address.ipv4_mapped or address) if address.version == 6 else address
+    return None
+
+
+def _last(values: Sequence[str]) -> str:
+    """The last item of a header's values, which the nearest proxy has written."""
+    return values[-1].rpartition(",")[2].strip() if values else ""
+
+
+def _matching(pattern: re.Pattern[str], text: str) -> str | None:
+    return text if pattern.fullmatch(text) else None
+
+
+NO_PROXIES = TrustedProxies()
