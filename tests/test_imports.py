@@ -86,10 +86,12 @@ RULES = {
         _names("aseba_vm", "device.programs", "network.tdm"), frozenset({"flatbuffers"}), NO_WALL_CLOCK
     ),
     f"{OURS}.classroom": Rule(
-        _names("aseba_vm", "bridge", "classroom", "files", "names.addresses", "sim"),
+        _names("aseba_vm", "bridge", "classroom", "files", "names.addresses", "sim", "web.hosts"),
         frozenset({"segno", "websockets"}),
     ),
+    f"{OURS}.classroom.router": Rule(_names("bridge", "classroom", "web"), frozenset({"aiohttp"})),
     f"{OURS}.classroom.server": Rule(_names("bridge", "classroom", "web"), frozenset({"aiohttp"})),
+    f"{OURS}.classroom.suite_proxy": Rule(_names("bridge", "web"), frozenset({"aiohttp", "multidict", "yarl"})),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.ros.foxglove.rosbridge.values": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS | {"cbor2", "numpy"}),

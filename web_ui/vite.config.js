@@ -70,7 +70,8 @@ const page = {
     // when only the page changes. So has Blockly (0.85 MB), which is loaded with the first program of blocks.
     chunkSizeWarningLimit: 900,
     rolldownOptions: {
-      input: { index: here("index.html"), class: here("class.html") }, // the page, and that of a teacher
+      // the page, that of a teacher, and the first page of a class
+      input: { index: here("index.html"), class: here("class.html"), join: here("join.html") },
       output: {
         codeSplitting: {
           groups: [

@@ -19,35 +19,45 @@ _POLL_S = 0.2
 
 
 class RunningClass:
-    """A class with a folder, on free ports."""
+    """A class with a folder, on a free port."""
 
     def __init__(self, path: Path, names: list[str], *, arguments: tuple[str, ...] = ()) -> None:
-        port = free_port(2 + 2 * len(names))
+        port = free_port()
         self.folder, self.port = path / "class", port
         pupils = path / "names.csv"
         pupils.write_text("\n".join(names))
-        given = ["--pupils", str(pupils), "--folder", str(self.folder), "--first-port", str(port)]
+        given = ["--pupils", str(pupils), "--folder", str(self.folder), "--port", str(port)]
         self.process = Process(path, "thymio_sim_ros.cli.main", "class", *given, *arguments)
         wait_for_port(port)
 
-    def port_of(self, number: int) -> int:
-        """The port of the bridge of the pupil with this number from 1 on; that of the page is the one before."""
-        return self.port + 2 * number
+    def token_of(self, pupil: str) -> str:
+        """The token of a pupil."""
+        return str(next(one["token"] for one in self.known["pupils"] if one["id"] == pupil))
+
+    def bridge_of(self, pupil: str, token: str | None = None) -> str:
+        """The address of a pupil's bridge, with the pupil's token unless another one is given."""
+        query = f"?token={self.token_of(pupil) if token is None else token}"
+        return f"ws://127.0.0.1:{self.port}/p/{pupil}/{query}"
 
     def end(self) -> None:
         """End the class with all its suites."""
         self.process.end()
 
-    def suite(self, number: int) -> psutil.Process:
+    def suite(self, pupil: str) -> psutil.Process:
         """The process of a pupil's suite, as soon as it listens."""
+        log = str(self.folder / "pupils" / pupil / "suite.log")
         found: list[psutil.Process] = []
 
         def is_listening() -> bool:
-            found[:] = [one for one in self.suites() if self.port_of(number) in _listening(one)]
+            found[:] = [one for one in self.suites() if log in _files(one)]
             return bool(found)
 
         until(is_listening, lambda: f"{self.state()}\n{self.process.output}", every_s=_POLL_S)
         return found[0]
+
+    def suite_port(self, pupil: str) -> int:
+        """The port of a pupil's suite on loopback."""
+        return min(_listening(self.suite(pupil)))
 
     def suites(self) -> list[psutil.Process]:
         """The processes of all suites that have opened their ports."""
@@ -61,13 +71,13 @@ class RunningClass:
     @property
     def address(self) -> str:
         """The teacher's page with the token."""
-        return f"http://127.0.0.1:{self.port}/#token={self.known['teacher_token']}"
+        return f"http://127.0.0.1:{self.port}/teacher/#token={self.known['teacher_token']}"
 
     def request(self, name: str, fields: Any = None, *, token: str | None = None) -> bytes:
         """The answer to a request of the teacher. Raises HTTPError."""
         given = self.known["teacher_token"] if token is None else token
         request = urllib.request.Request(
-            f"http://127.0.0.1:{self.port}/class/{name}",
+            f"http://127.0.0.1:{self.port}/teacher/class/{name}",
             None if fields is None else json.dumps(fields).encode(),
             {"Authorization": f"Bearer {given}"},
         )
@@ -100,3 +110,9 @@ def _listening(process: psutil.Process) -> set[int]:
     with contextlib.suppress(psutil.NoSuchProcess):
         return {one.laddr.port for one in process.net_connections("tcp") if one.status == psutil.CONN_LISTEN}
     return set()
+
+
+def _files(process: psutil.Process) -> list[str]:
+    with contextlib.suppress(psutil.NoSuchProcess):
+        return [one.path for one in process.open_files()]
+    return []

@@ -7,6 +7,7 @@ import base64
 import io
 import json
 import signal
+import socket
 import urllib.error
 import zipfile
 from collections.abc import Iterator
@@ -31,8 +32,7 @@ from thymio_sim_ros.testing.ros.domain import reserved
 
 pytestmark = pytest.mark.process
 
-ADA, BEN = 1, 2
-"""Numbers of the pupils."""
+ADA, BEN = "ada", "ben"
 PROGRAM = "onevent button.forward\nmotor.left.target = 100\n"
 DRAFT = PROGRAM + "motor.right.target ="
 
@@ -49,15 +49,10 @@ def group(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningClass]:
         running.end()
 
 
-def token_of(group: RunningClass, name: str) -> str:
-    return str(next(pupil["token"] for pupil in group.known["pupils"] if pupil["name"] == name))
-
-
-def asked(port: int, token: str, request: ms.ClientMessage, names: tuple[str, ...]) -> dict[str, Any]:
+def asked(url: str, request: ms.ClientMessage, names: tuple[str, ...] = ()) -> dict[str, Any]:
     """The values of parameters of a suite after a request of its pupil."""
 
     async def talk() -> dict[str, Any]:
-        url = f"ws://127.0.0.1:{port}/?token={token}"
         async with connect(url, subprotocols=SUBPROTOCOLS, max_size=None) as connection:
             client = Client(connection)
             await client.send(request, ms.GetParameters(names, "asked"))
@@ -68,22 +63,22 @@ def asked(port: int, token: str, request: ms.ClientMessage, names: tuple[str, ..
     return run(talk())
 
 
-def values_of(group: RunningClass, number: int, name: str, *wanted: str) -> tuple[Any, ...]:
+def values_of(group: RunningClass, pupil: str, *wanted: str) -> tuple[Any, ...]:
     """Parameters of a pupil's suite."""
-    values = asked(group.port_of(number), token_of(group, name), ms.GetParameters(wanted), wanted)
+    values = asked(group.bridge_of(pupil), ms.GetParameters(wanted), wanted)
     return tuple(values.get(parameter) for parameter in wanted)
 
 
-def notice(group: RunningClass, number: int, name: str) -> Any:
-    return values_of(group, number, name, "/web_ui.notice", "/web_ui.notice_link")
+def notice(group: RunningClass, pupil: str) -> Any:
+    return values_of(group, pupil, "/web_ui.notice", "/web_ui.notice_link")
 
 
 def test_a_bridge_needs_the_token_of_its_pupil(group: RunningClass) -> None:
-    for token in ("", token_of(group, "Ben")):
+    for token in ("", group.token_of(BEN)):
         with pytest.raises((WebSocketException, TimeoutError)):
-            asked(group.port_of(ADA), token, ms.GetParameters(()), ())
+            asked(group.bridge_of(ADA, token), ms.GetParameters(()))
     with pytest.raises(urllib.error.HTTPError, match="401"):
-        group.request("state", token=token_of(group, "Ada"))
+        group.request("state", token=group.token_of(ADA))
 
 
 def test_poses_come_while_the_page_of_the_teacher_is_open(group: RunningClass) -> None:
@@ -103,13 +98,13 @@ def test_a_pause_of_the_teacher_holds_until_the_teacher_ends_it(group: RunningCl
     group.request("pause", {"pupils": ["ada"], "paused": True})
     group.until("ada", lambda one: one["paused"])
     page = "/web_ui.paused_by_teacher"
-    assert values_of(group, ADA, "Ada", page, "/web_ui.pupil") == (True, "Ada")
-    assert values_of(group, BEN, "Ben", page, "/web_ui.pupil") == (False, "Ben")
+    assert values_of(group, ADA, page, "/web_ui.pupil") == (True, "Ada")
+    assert values_of(group, BEN, page, "/web_ui.pupil") == (False, "Ben")
     for _ in range(2):
         assert run(answer_after_resuming(group)) == "running"  # and then the class pauses it
     group.request("pause", {"pupils": None, "paused": False})
     group.until("ada", lambda one: not one["paused"])
-    assert values_of(group, ADA, "Ada", page) == (False,)
+    assert values_of(group, ADA, page) == (False,)
 
 
 async def answer_after_resuming(group: RunningClass) -> str:
@@ -117,7 +112,7 @@ async def answer_after_resuming(group: RunningClass) -> str:
 
     The state in between may be replaced before it is sent; while time runs, the state comes once a second.
     """
-    url = f"ws://127.0.0.1:{group.port_of(ADA)}/?token={token_of(group, 'Ada')}"
+    url = group.bridge_of(ADA)
     service: int | None = None
     answer, is_requested = "", False
     async with asyncio.timeout(PATIENCE_S), connect(url, subprotocols=SUBPROTOCOLS, max_size=None) as connection:
@@ -143,11 +138,11 @@ async def answer_after_resuming(group: RunningClass) -> str:
 def test_a_message_and_a_robot_that_is_shown_arrive_on_the_page(group: RunningClass) -> None:
     group.request("message", {"pupils": ["ada"], "text": "Bitte schön"})
     group.request("show", {"pupil": "ben"})
-    watch = group.pupil("ben")["watch"]
-    group.until("ada", lambda _one: notice(group, ADA, "Ada") == ("Bitte schön", watch))
+    watch = group.pupil("ben")["watch"].replace("../p/", "../")  # from the page of a pupil
+    group.until("ada", lambda _one: notice(group, ADA) == ("Bitte schön", watch))
     group.request("show", {"pupil": None})
-    group.until("ada", lambda _one: notice(group, ADA, "Ada") == ("Bitte schön", ""))
-    assert notice(group, BEN, "Ben") == ("", "")
+    group.until("ada", lambda _one: notice(group, ADA) == ("Bitte schön", ""))
+    assert notice(group, BEN) == ("", "")
 
 
 def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: RunningClass) -> None:
@@ -159,7 +154,7 @@ def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: Ru
         ms.Parameter("/simulator.playground", playground),
         ms.Parameter("/web_ui.draft", DRAFT),
     )
-    asked(group.port_of(ADA), token_of(group, "Ada"), ms.SetParameters(changes, "set"), ())
+    asked(group.bridge_of(ADA), ms.SetParameters(changes, "set"))
     group.request("message", {"pupils": ["ada"], "text": "still there"})
     works = {"ada/program.aesl": PROGRAM, "ada/draft.aesl": DRAFT, "missing.txt": "Ben\n"}
     group.until("ada", lambda _one: zipped(group) == works)
@@ -174,8 +169,8 @@ def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: Ru
     ben = group.pupil("ben")
     assert ben["restarts"] == 0, ben["reason"]
     names = ("/aseba_runtime.script.source", "/simulator.playground")
-    assert values_of(group, ADA, "Ada", *names) == (PROGRAM, playground)
-    group.until("ada", lambda _one: notice(group, ADA, "Ada")[0] == "still there")
+    assert values_of(group, ADA, *names) == (PROGRAM, playground)
+    group.until("ada", lambda _one: notice(group, ADA)[0] == "still there")
 
 
 def test_suites_end_when_the_class_is_killed(tmp_path: Path) -> None:
@@ -221,7 +216,6 @@ def zipped(group: RunningClass) -> dict[str, str]:
         (["--pupils", "{names}", "--playground", "nowhere"], "nowhere"),
         (["--pupils", "{names}", "--ros", "--first-domain", "232"], "the last domain would be 233"),
         (["--pupils", "{names}", "--first-domain", "7"], "expected --ros"),
-        (["--pupils", "{names}", "--first-port", "65532"], "the last port would be 65536"),
     ],
 )
 def test_wrong_options_are_refused_before_anything_starts(
@@ -236,3 +230,14 @@ def test_wrong_options_are_refused_before_anything_starts(
     names.write_text("Ada\nBen\n")
     assert commands.main(["class", *(one.format(names=names) for one in arguments)]) == 2
     assert reason in capsys.readouterr().err
+
+
+def test_a_port_that_is_used_is_refused_before_anything_starts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = tmp_path / "names.csv"
+    names.write_text("Ada\n")
+    with socket.create_server(("127.0.0.1", 0)) as used:
+        port = used.getsockname()[1]
+        assert commands.main(["class", "--pupils", str(names), "--port", str(port)]) == 2
+    assert f"port {port} of the class" in capsys.readouterr().err

@@ -16,7 +16,8 @@ from thymio_sim_ros.classroom.folder import ClassFolder, Work
 from thymio_sim_ros.classroom.requests import Answer, RefusalError, answer
 from thymio_sim_ros.classroom.suite_process import SuiteOptions
 
-OPTIONS = SuiteOptions("localhost", 21_300, "desk", "welcome")
+OPTIONS = SuiteOptions("desk", "welcome")
+URL = "https://school.example/thymio/"
 
 
 class Teacher:
@@ -32,7 +33,7 @@ class Teacher:
         async def talk() -> list[Answer]:
             classroom = Classroom(self.places, OPTIONS, self.folder)
             return [
-                await answer(classroom, method, name, b"" if fields is None else json.dumps(fields).encode())
+                await answer(classroom, method, name, b"" if fields is None else json.dumps(fields).encode(), URL)
                 for method, name, fields in requests
             ]
 
@@ -89,7 +90,14 @@ def test_the_sheet_has_a_link_for_each_pupil(teacher: Teacher) -> None:
     [sheet] = teacher.ask(("GET", "sheet", None))
     links = json.loads(sheet.body)
     assert [link["name"] for link in links] == ["Ada", "Ben", "Eve", "Zoë"]
-    assert links[0]["url"] == f"http://localhost:21301/#token={teacher.places[0].token}"
+    assert links[0]["url"] == f"{URL}p/ada/#token={teacher.places[0].token}"
+
+
+def test_the_room_has_an_address_and_a_code(teacher: Teacher) -> None:
+    [answered] = teacher.ask(("GET", "room", None))
+    room, code = json.loads(answered.body), teacher.folder.room_code
+    assert (room["address"], room["code"], room["url"]) == (URL, code, f"{URL}#token={code}")
+    assert room["qr"].startswith("<svg")
 
 
 def test_plans_are_those_of_pupils(teacher: Teacher) -> None:

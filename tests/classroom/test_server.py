@@ -5,42 +5,22 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
 
 from tests.bridge.peers import run
-from tests.classroom.test_requests import OPTIONS
+from tests.classroom.served_class import served
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.bridge import access
 from thymio_sim_ros.bridge.connections import MIN_WAIT_S, Phase
-from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.classroom import server
-from thymio_sim_ros.classroom.classroom import Classroom
-from thymio_sim_ros.classroom.folder import ClassFolder
 from thymio_sim_ros.classroom.requests import MAX_BODY
 
 pytestmark = pytest.mark.process
 
 TOKEN = "lesson-2026"
 """Of the teacher; chosen, so that it may be guessed."""
-
-
-@contextlib.asynccontextmanager
-async def served(path: Path) -> AsyncIterator[int]:
-    """The port of the page of a class whose suites are not started."""
-    folder = ClassFolder(path)
-    classroom = Classroom(folder.places(["Ada"]), OPTIONS, folder)
-    listeners = listen("127.0.0.1", 0)
-    serving = asyncio.create_task(server.serve_class(listeners, classroom, None, TOKEN, is_loopback=True))
-    try:
-        yield int(listeners[0].getsockname()[1])
-    finally:
-        serving.cancel()
-        await asyncio.gather(serving, return_exceptions=True)
-        for listener in listeners:
-            listener.close()
 
 
 async def ask(port: int, name: str, token: str, body: bytes = b"") -> tuple[int, str]:
@@ -59,9 +39,11 @@ def test_who_tries_many_tokens_is_told_to_wait(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(access, "_MAX_WAIT_S", 0.0)
 
     async def answers() -> list[tuple[int, str]]:
-        async with served(tmp_path) as port:
-            found = [await ask(port, "class/message", f"wrong{number}") for number in range(access._BURST + 1)]
-            assert (await ask(port, "", ""))[0] == 405  # the page itself needs no token
+        async with served(tmp_path, teacher_token=TOKEN) as group:
+            found = [
+                await ask(group.port, "teacher/class/message", f"wrong{number}") for number in range(access._BURST + 1)
+            ]
+            assert (await ask(group.port, "", ""))[0] == 405  # the page itself needs no token
             return found
 
     *refused, (status, text) = run(answers())
@@ -71,8 +53,8 @@ def test_who_tries_many_tokens_is_told_to_wait(tmp_path: Path, monkeypatch: pyte
 
 def test_a_body_that_is_too_large_is_answered(tmp_path: Path) -> None:
     async def answer() -> tuple[int, str]:
-        async with served(tmp_path) as port:
-            return await ask(port, "class/message", TOKEN, b" " * (20 << 20))
+        async with served(tmp_path, teacher_token=TOKEN) as group:
+            return await ask(group.port, "teacher/class/message", TOKEN, b" " * (20 << 20))
 
     assert run(answer()) == (413, f"expected a body of at most {MAX_BODY} bytes\n")
 
@@ -80,18 +62,18 @@ def test_a_body_that_is_too_large_is_answered(tmp_path: Path) -> None:
 def test_connections_beyond_the_limit_are_logged_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(server, "max_connections", lambda: 3)
+    monkeypatch.setattr(server, "max_connections", lambda: 6)  # two open files for each
     monkeypatch.setitem(MIN_WAIT_S, Phase.SILENT, 0.0)
 
     async def many() -> None:
-        async with served(tmp_path) as port, contextlib.AsyncExitStack() as stack:
+        async with served(tmp_path, teacher_token=TOKEN) as group, contextlib.AsyncExitStack() as stack:
             for _ in range(30):
-                _, writer = await asyncio.open_connection("127.0.0.1", port)
+                _, writer = await asyncio.open_connection("127.0.0.1", group.port)
                 stack.callback(writer.close)
-            assert (await ask(port, "class/message", TOKEN, b'{"text": ""}'))[0] == 200
+            assert (await ask(group.port, "teacher/class/message", TOKEN, b'{"text": ""}'))[0] == 200
 
     with caplog.at_level(logging.WARNING):
         run(many())
     assert [record.getMessage() for record in caplog.records] == [
-        "teacher's page: the maximum number of connections is reached; more have to wait"
+        "class: the maximum number of connections is reached; more have to wait"
     ]

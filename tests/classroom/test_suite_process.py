@@ -15,14 +15,16 @@ from thymio_sim_ros.classroom.folder import Place
 from thymio_sim_ros.classroom.seat import FIRST_WAIT_S, MAX_WAIT_S, STEADY_S, next_wait_s
 from thymio_sim_ros.classroom.suite_process import SuiteOptions, command, environment, reason_of_end
 
-OPTIONS = SuiteOptions("localhost", 8100, "desk", "welcome")
+OPTIONS = SuiteOptions("desk", "welcome")
+PARAMETERS = Path("/class/parameters.yaml")
 PLACE = Place("ada", "Ada", 2, "secret-token", "other-token")
 
 
-def test_a_pupil_has_two_ports_an_embedded_graph_and_no_servers_for_other_programs() -> None:
-    line = " ".join(command(OPTIONS, PLACE, "welcome", Path("/class/parameters.yaml")))
+def test_a_pupil_has_a_port_of_loopback_an_embedded_graph_and_no_servers_for_other_programs() -> None:
+    line = " ".join(command(OPTIONS, 8105, "welcome", PARAMETERS))
     assert line.startswith("--portable ")
-    assert "--port 8105 --foxglove-port 8106" in line
+    assert "--address localhost --trusted-proxy 127.0.0.1" in line
+    assert "--port 8105 --no-foxglove-port" in line
     assert "--no-aseba --no-tdm" in line
     assert line.endswith(
         "--ros-args -p simulator:batch_ticks:=3 -p simulator:clock_rate:=20.0 --params-file /class/parameters.yaml"
@@ -32,12 +34,12 @@ def test_a_pupil_has_two_ports_an_embedded_graph_and_no_servers_for_other_progra
 
 def test_with_ros_a_pupil_has_a_domain() -> None:
     options = replace(OPTIONS, first_domain=1)
-    assert command(options, PLACE, "welcome", Path("/class/parameters.yaml"))[0] == "--ros"
+    assert command(options, 8105, "welcome", PARAMETERS)[0] == "--ros"
     assert environment(options, PLACE, {})["ROS_DOMAIN_ID"] == "3"
 
 
 def test_tokens_are_in_the_environment_only() -> None:
-    assert "token" not in " ".join(command(OPTIONS, PLACE, "welcome", Path("/class/parameters.yaml")))
+    assert "token" not in " ".join(command(OPTIONS, 8105, "welcome", PARAMETERS))
     assert environment(OPTIONS, PLACE, {"PATH": "/bin"})["THYMIO_SIM_TOKEN"] == "secret-token"
 
 

@@ -415,6 +415,15 @@ def test_a_text_that_cannot_be_a_token_is_refused(capsys, token):
     assert "expected 4 to 200 letters" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("command", [(), ("class", "--pupils", "names.csv")])
+@pytest.mark.parametrize("proxy", ["proxy.example", "10.0.0.5/8", "0.0.0.0/0"])
+def test_what_names_no_proxy_is_refused(capsys, command, proxy):
+    with pytest.raises(SystemExit) as ended:
+        main.main([*command, "--trusted-proxy", proxy])
+    assert ended.value.code == 2
+    assert f"argument --trusted-proxy: '{proxy}' found" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
@@ -441,6 +450,7 @@ def test_a_wrong_token_of_the_environment_is_one_line_that_does_not_show_it(caps
         ((), {TOKEN_VARIABLE: "fromenv"}, "fromenv", None),
         (("--token", "abcd"), {TOKEN_VARIABLE: "fromenv"}, "abcd", None),
         (("--address", "0.0.0.0"), {}, None, None),
+        (("--trusted-proxy", "127.0.0.1"), {}, None, None),
         (("--address", "0.0.0.0", "--no-token"), {TOKEN_VARIABLE: "fromenv"}, "", ""),
         (("--address", "0.0.0.0", "--read-only-token", "look"), {}, None, "look"),
     ],

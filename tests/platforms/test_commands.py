@@ -74,7 +74,7 @@ def test_a_class_of_two_gets_its_pages_and_ends_with_ctrl_c(tmp_path: Path) -> N
         group.until("ben", lambda one: one["phase"] == "running" and one["programs"])
         group.process.interrupt()
         assert group.process.wait() == 0, group.process.output
-        assert not any(_listens(port) for port in (group.port, group.port_of(1), group.port_of(2)))
+        assert not _listens(group.port)
     finally:
         group.end()
     assert "Traceback" not in group.process.output + log.read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ import pytest
 
 from tests.patience import PATIENCE_MS
 
-LOCAL = ("http://127.0.0.1:", "ws://127.0.0.1:", "data:", "blob:")
+LOCAL = (*(f"{scheme}://127.0.0.1:" for scheme in ("http", "ws", "https", "wss")), "data:", "blob:")
 SIZE = {"width": 1024, "height": 768}
 SLOW_DISPLAY = """(() => {
     const FRAME_MS = 50;

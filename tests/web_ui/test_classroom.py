@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Iterator
+from urllib.parse import urljoin
 
 import pytest
 
 from tests.classroom.class_support import RunningClass
-from tests.web_ui.page_support import MARKS, open_page
+from tests.web_ui.page_support import MARKS, choose_language, open_page
 
 pytestmark = MARKS
 
@@ -22,7 +23,9 @@ def group(browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running
 
 
 def page_of(group: RunningClass, pupil: str) -> str:
-    return str(group.pupil(pupil)["link"]).replace("/#", "/?tour=off#").replace("localhost", "127.0.0.1")
+    """The address of a pupil's page with the token."""
+    link = urljoin(group.address, group.pupil(pupil)["link"])
+    return link.replace("/#", "/?tour=off#")
 
 
 def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
@@ -55,7 +58,8 @@ def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
     page.click("[data-pupil=jurg] [data-verb=present]")
     page.click("[data-verb=offer]")
     note.locator("a").wait_for()
-    assert note.locator("a").get_attribute("href") == group.pupil("jurg")["watch"]
+    watched = note.locator("a").evaluate("(link) => link.href")
+    assert watched == urljoin(group.address, group.pupil("jurg")["watch"])
     page.click("[data-verb=close]")
     note.locator("a").wait_for(state="hidden")
     note.locator("button").click()
@@ -104,8 +108,51 @@ def test_what_a_pupil_has_written_is_collected_before_it_runs(group: RunningClas
     group.until("jurg", lambda _one: zipped.exists() and "var written = 1" in zipped.read_text())
 
 
+def test_a_pupil_enters_the_code_of_the_room_and_chooses_a_name(group: RunningClass, page) -> None:
+    page.goto(f"http://127.0.0.1:{group.port}/")
+    for typed in ("wrong1", group.known["room_code"].upper()):
+        page.get_by_role("textbox", name="Code of your class").fill(typed)
+        page.click("[data-verb=enter]")
+        if typed == "wrong1":
+            page.get_by_text("This code is wrong.").wait_for()
+    page.get_by_role("link", name="Jürg").click()
+    page.locator("#pupil", has_text="Jürg").wait_for()
+    assert page.url == f"http://127.0.0.1:{group.port}/p/jurg/"
+    page.goto(f"http://127.0.0.1:{group.port}/")  # the browser keeps the code
+    page.get_by_role("link", name="Ada").wait_for()
+
+
+def test_the_room_has_an_address_a_code_and_a_qr_code_for_the_projector(group: RunningClass, page) -> None:
+    page.goto(group.address)
+    page.click("[data-verb=room]")
+    page.get_by_text(f"Code: {group.known['room_code']}").wait_for()
+    page.locator(".class-room img").wait_for()
+    assert page.locator("#room-address").inner_text() == f"http://localhost:{group.port}/"
+    page.click("[data-verb=close]")
+    page.locator(".class-room").wait_for(state="hidden")
+
+
+def test_pupils_with_one_browser_do_not_see_what_the_other_has_stored(group: RunningClass, page) -> None:
+    open_page(page, page_of(group, "ada"))
+    choose_language(page, "de")
+    page.goto(f"http://127.0.0.1:{group.port}/p/jurg/?tour=off&welcome=off")
+    page.locator("#connection[data-state=noToken]").wait_for()
+    assert page.evaluate("() => document.documentElement.lang") == "en"
+    open_page(page, f"http://127.0.0.1:{group.port}/p/ada/")  # in this tab the token of Ada is kept
+    page.locator("#pupil", has_text="Ada").wait_for()
+    assert page.evaluate("() => document.documentElement.lang") == "de"
+
+
+def test_a_page_connects_again_when_its_suite_has_been_restarted(group: RunningClass, page) -> None:
+    open_page(page, page_of(group, "jurg"))
+    group.suite("jurg").kill()
+    page.locator("#connection[data-state=lost]").wait_for()
+    page.locator("#connection[data-state=connected]").wait_for()
+    page.locator("#pupil", has_text="Jürg").wait_for()
+
+
 @pytest.mark.slow
 def test_without_the_token_the_page_says_what_is_missing(group: RunningClass, page) -> None:
-    page.goto(f"http://127.0.0.1:{group.port}/")
+    page.goto(f"http://127.0.0.1:{group.port}/teacher/")
     page.get_by_text("This page needs the link of the teacher").wait_for()
     assert page.locator(".pupil").count() == 0

@@ -8,5 +8,8 @@ seat          a pupil's place: supervises the suite, keeps the program
 classroom     all seats, and what the teacher does to them
 plan          a playground seen from above, for the small pictures
 requests      the HTTP interface of the teacher's page, without I/O
-server        its HTTP server
+address       where the class listens
+router        the one port of the class: path → page, interface, or suite
+suite_proxy   requests that are passed on to suites
+server        the HTTP server
 """

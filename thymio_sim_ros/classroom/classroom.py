@@ -36,7 +36,7 @@ class Classroom:
     def __init__(self, places: Sequence[Place], options: SuiteOptions, folder: ClassFolder) -> None:
         at_once = STARTS if options.first_domain is None else STARTS_ROS
         starting = asyncio.Semaphore(at_once * (os.cpu_count() or 1))
-        self._folder = folder
+        self.options, self.folder = options, folder
         self.seats = {place.id: Seat(place, options, folder, starting) for place in places}
         self._messages: dict[str, str] = {}
         self._shown: str | None = None
@@ -61,6 +61,10 @@ class Classroom:
         self._asked_s = asyncio.get_running_loop().time()
         pupils = [{**seat.summary(), "notice": self._messages.get(pupil, "")} for pupil, seat in self.seats.items()]
         return {"pupils": pupils, "shown": self._shown}
+
+    def room(self) -> Sequence[Mapping[str, str]]:
+        """The names on the page of the room, each with its link from there."""
+        return [{"name": seat.place.name, "link": f"p/{seat.link()}"} for seat in self.seats.values()]
 
     async def plan(self, number: str) -> Mapping[str, Any] | None:
         """A playground seen from above by the `plan` of a pupil; None if there is none that can be read."""
@@ -102,7 +106,7 @@ class Classroom:
         packed = io.BytesIO()
         with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
             for seat in self.seats.values():
-                work = self._folder.work(seat.place)
+                work = self.folder.work(seat.place)
                 if work.program is not None:
                     archive.writestr(f"{seat.place.id}/program.aesl", work.program)
                 if work.draft is not None and work.draft != work.program:
@@ -113,7 +117,7 @@ class Classroom:
 
     def missing(self) -> list[str]:
         """The names of the pupils who have neither run a program nor written one."""
-        works = {seat.place.name: self._folder.work(seat.place) for seat in self.seats.values()}
+        works = {seat.place.name: self.folder.work(seat.place) for seat in self.seats.values()}
         return [name for name, work in works.items() if work.program is None and work.draft is None]
 
     async def _show_notices(self, ids: Iterable[str]) -> None:
@@ -124,7 +128,7 @@ class Classroom:
         if self._shown is None or self._shown == pupil:
             return Notice(text)
         shown = self.seats[self._shown]
-        return Notice(text or shown.place.name, shown.link(read_only=True))
+        return Notice(text or shown.place.name, f"../{shown.link(read_only=True)}")
 
     async def _follow_watching(self) -> None:
         """Receive poses while the teacher's page is open."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import secrets
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -22,13 +23,15 @@ __all__ = ["ClassFolder", "Place", "Work"]
 
 _FILE = "class.json"
 _PROGRAM, _DRAFT, _WORK, _PARAMETERS = "program.aesl", "draft.aesl", "work.json", "parameters.yaml"
+_CODE_LETTERS, _CODE_LENGTH = "abcdefghjkmnpqrstuvwxyz23456789", 6
+"""A code that pupils type: no letters that look like others, and 30 bits, since attempts are limited."""
 _REST = ("program_name", "playground", "class_playground")
 """The fields of `Work` that are in `work.json`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A place of a pupil, permanent with the folder: `number` from 0 decides ports and domain, `id` names the files."""
+    """A place of a pupil, permanent with the folder: `number` from 0 decides the domain, `id` is in files and links."""
 
     id: str
     name: str
@@ -63,6 +66,9 @@ class ClassFolder:
             path.chmod(0o700)
             known = json.loads(self._file.read_text("utf-8")) if self._file.exists() else {}
             self.teacher_token = _token(known.get("teacher_token") or new_token())
+            """Opens the teacher's page."""
+            self.room_code = _token(known.get("room_code") or _new_code())
+            """With it, pupils pick their name."""
             self._places = {place.name: place for place in map(_place, known.get("pupils", []))}
         except OSError as error:
             raise ClassError(
@@ -123,7 +129,8 @@ class ClassFolder:
 
     def _save(self) -> None:
         pupils = [asdict(place) for place in sorted(self._places.values(), key=lambda place: place.number)]
-        _write(self._file, json.dumps({"teacher_token": self.teacher_token, "pupils": pupils}, indent=2) + "\n")
+        known = {"teacher_token": self.teacher_token, "room_code": self.room_code, "pupils": pupils}
+        _write(self._file, json.dumps(known, indent=2) + "\n")
 
 
 def _read(path: Path) -> str | None:
@@ -144,6 +151,10 @@ def _place(fields: dict[str, Any]) -> Place:
     _token(place.token)
     _token(place.read_only_token)
     return place
+
+
+def _new_code() -> str:
+    return "".join(secrets.choice(_CODE_LETTERS) for _ in range(_CODE_LENGTH))
 
 
 def _token(text: str) -> str:

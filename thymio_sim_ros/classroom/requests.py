@@ -3,6 +3,7 @@
 GET  class/state            pupils with what their robots do, see `Seat.summary`
 GET  class/plans/<plan>     a playground seen from above, see `plan_of`
 GET  class/sheet            names with links and their QR codes
+GET  class/room             address and code with which pupils pick a name, and the QR code of both
 GET  class/programs.zip     the programs of all pupils
 GET  class/missing          names of the pupils without one
 POST class/<action>         {"pupils": [ids] or null for all, …}; actions: see `_ACTIONS`
@@ -43,10 +44,10 @@ class RefusalError(ThymioSimError):
         self.status = status
 
 
-async def answer(classroom: Classroom, method: str, name: str, body: bytes) -> Answer:
-    """Carry out a request; `name` is its path after `class/`. Raises RefusalError."""
+async def answer(classroom: Classroom, method: str, name: str, body: bytes, url: str) -> Answer:
+    """Carry out a request; `name` is its path after `class/`, `url` that of the class. Raises RefusalError."""
     if method == "GET":
-        return await _read(classroom, name)
+        return await _read(classroom, name, url)
     if method != "POST":
         raise RefusalError(405, f"found {method[:20]}, expected GET or POST")
     act = _ACTIONS.get(name)
@@ -62,11 +63,15 @@ async def answer(classroom: Classroom, method: str, name: str, body: bytes) -> A
     return _json({})
 
 
-async def _read(classroom: Classroom, name: str) -> Answer:
+async def _read(classroom: Classroom, name: str, url: str) -> Answer:
     if name == "state":
         return _json(classroom.state())
     if name == "sheet":
-        return _json([_links(seat.place.name, seat.link()) for seat in classroom.seats.values()])
+        seats = classroom.seats.values()
+        return _json([{"name": seat.place.name, **_with_qr_code(f"{url}p/{seat.link()}")} for seat in seats])
+    if name == "room":
+        code = classroom.folder.room_code
+        return _json({"address": url, "code": code, **_with_qr_code(f"{url}#token={code}")})
     if name == "programs.zip":
         return Answer(classroom.programs(), "application/zip", "programs.zip")
     if name == "missing":
@@ -119,19 +124,15 @@ def _pupils(classroom: Classroom, fields: Mapping[str, Any]) -> list[str]:
     return ids
 
 
-def _links(name: str, url: str) -> dict[str, str]:
-    return {"name": name, "url": url, "qr": _qr_code(url)}
-
-
-def _qr_code(url: str) -> str:
-    """An SVG image, "" where the library is not installed."""
+def _with_qr_code(url: str) -> dict[str, str]:
+    """A URL, and its QR code as an SVG image: "" where the library is not installed."""
     try:
         import segno
     except ImportError:
-        return ""
+        return {"url": url, "qr": ""}
     drawn = io.BytesIO()
     segno.make_qr(url, error="m").save(drawn, kind="svg", border=2, xmldecl=False, svgns=True)
-    return drawn.getvalue().decode()
+    return {"url": url, "qr": drawn.getvalue().decode()}
 
 
 def _json(value: Any) -> Answer:

@@ -18,7 +18,6 @@ from typing import Any
 
 from websockets.exceptions import WebSocketException
 
-from thymio_sim_ros.bridge.access import is_loopback
 from thymio_sim_ros.classroom.bridge_client import (
     DRAFT,
     PLAYGROUND,
@@ -28,10 +27,9 @@ from thymio_sim_ros.classroom.bridge_client import (
     SuiteStatus,
 )
 from thymio_sim_ros.classroom.folder import ClassFolder, Place, Work
-from thymio_sim_ros.classroom.suite_process import SuiteOptions, SuiteProcess, command, environment
+from thymio_sim_ros.classroom.suite_process import SuiteOptions, SuiteProcess, command, environment, free_port
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.files.loading import NO_PROGRAM, is_playground_text
-from thymio_sim_ros.names.addresses import urls
 
 __all__ = ["FIRST_WAIT_S", "MAX_WAIT_S", "START_S", "STEADY_S", "Notice", "Seat", "next_wait_s"]
 
@@ -80,6 +78,8 @@ class Seat:
         self._wants_pause = False
         self._work = Work()
         self._set_playground(options.playground)
+        self.port = 0
+        """Port of the suite on loopback, a new one for each start; 0: it has not started yet."""
         self.phase = "waiting"
         """waiting (for its turn to start), starting, running, or broken: waits before the next restart."""
         self.restarts = 0
@@ -97,9 +97,9 @@ class Seat:
         return None if self._process is None else self._process.pid
 
     def link(self, *, read_only: bool = False) -> str:
-        """Address of the pupil's page with the token, as other computers reach it."""
+        """Address of the pupil's page with the token, relative to the folder `p/` of the class."""
         token = self.place.read_only_token if read_only else self.place.token
-        return urls("http", self._options.address, self._options.port(self.place), "/", token)[-1]
+        return f"{self.place.id}/#token={token}"
 
     async def run(self) -> None:
         """Keep the suite running until this task is cancelled, which ends the suite."""
@@ -176,17 +176,16 @@ class Seat:
         self._set_playground(self._options.playground if is_of_class else work.playground)
         program = self._options.program if work.program is None else NO_PROGRAM
         parameters = self._folder.write_parameters(self.place, _parameters(work, is_of_class=is_of_class))
+        self.port = free_port()
         self._process = await SuiteProcess.start(
-            command(self._options, self.place, program, parameters),
+            command(self._options, self.port, program, parameters),
             environment(self._options, self.place, os.environ),
             self._folder.pupil(self.place) / "suite.log",
         )
 
     async def _serve(self) -> None:
         """Follow the suite by its bridge; returns when it does not answer any more."""
-        host = "127.0.0.1" if is_loopback(self._options.address) else self._options.address
-        host = "127.0.0.1" if host == "0.0.0.0" else host
-        url = f"ws://{host}:{self._options.foxglove_port(self.place)}/"
+        url = f"ws://127.0.0.1:{self.port}/"
         clock_s = asyncio.get_running_loop().time
         end_s = clock_s() + START_S
         try:
@@ -297,8 +296,8 @@ class Seat:
             "programs": programs,
             "overview": client.overview,
             "plan": self.plan,
-            "link": self.link(),
-            "watch": self.link(read_only=True),
+            "link": f"../p/{self.link()}",
+            "watch": f"../p/{self.link(read_only=True)}",
         }
 
 

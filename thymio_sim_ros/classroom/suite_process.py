@@ -21,6 +21,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
 from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
+from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.classroom.folder import Place
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "command",
     "discovery",
     "environment",
+    "free_port",
     "preload",
     "reason_of_end",
 ]
@@ -50,37 +52,37 @@ _reaping = threading.Lock()
 
 @dataclass(frozen=True, slots=True)
 class SuiteOptions:
-    """Common options of the suites of a class; a pupil's ports and domain follow from `Place.number`."""
+    """Common options of the suites of a class; a pupil's domain follows from `Place.number`."""
 
-    address: str
-    first_port: int
     playground: str
     program: str
     first_domain: int | None = None
     """ROS domain of the first pupil; None: the embedded graph, which has none."""
-
-    def port(self, place: Place) -> int:
-        """Port of the page; that of the bridge is the next one. The first port is that of the teacher's page."""
-        return self.first_port + 1 + 2 * place.number
-
-    def foxglove_port(self, place: Place) -> int:
-        """Port of the bridge."""
-        return self.port(place) + 1
 
     def domain(self, place: Place) -> int | None:
         """ROS domain, None on the embedded graph."""
         return None if self.first_domain is None else self.first_domain + place.number
 
 
-def command(options: SuiteOptions, place: Place, program: str, parameters: Path) -> list[str]:
+def free_port() -> int:
+    """A port of loopback that is free now. Should another program take it first, the suite starts again on another."""
+    sockets = listen("localhost", 0)
+    port = int(sockets[0].getsockname()[1])
+    for one in sockets:
+        one.close()
+    return port
+
+
+def command(options: SuiteOptions, port: int, program: str, parameters: Path) -> list[str]:
     """The arguments of a pupil's suite: no servers for other programs, no tokens, which are in the environment.
 
-    `parameters` is a file of ROS parameters with what the pupil has made.
+    The suite is reached by the router of the class only. `parameters` is a file of ROS parameters with what the pupil
+    has made.
     """
     return [
         "--portable" if options.first_domain is None else "--ros",
-        *("--address", options.address, "--no-aseba", "--no-tdm"),
-        *("--port", str(options.port(place)), "--foxglove-port", str(options.foxglove_port(place))),
+        *("--address", "localhost", "--trusted-proxy", "127.0.0.1", "--no-aseba", "--no-tdm"),
+        *("--port", str(port), "--no-foxglove-port"),
         *("--playground", options.playground, "--program", program),
         *("--ros-args", "-p", f"simulator:batch_ticks:={BATCH_TICKS}", "-p", f"simulator:clock_rate:={CLOCK_HZ}"),
         *("--params-file", str(parameters.absolute())),

@@ -11,8 +11,9 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from thymio_sim_ros.bridge.access import is_loopback
-from thymio_sim_ros.bridge.listening import check_free, listen
+from thymio_sim_ros.bridge.listening import listen
+from thymio_sim_ros.bridge.visitor import TrustedProxies
+from thymio_sim_ros.classroom.address import ClassAddress
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import ClassFolder, Place
@@ -21,6 +22,7 @@ from thymio_sim_ros.classroom.suite_process import SuiteOptions, discovery, prel
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import check_files, path_argument
 from thymio_sim_ros.cli.output import print_text
+from thymio_sim_ros.cli.page_options import add_proxy_option, check_port
 from thymio_sim_ros.cli.ros_graph import add_graph_options, check_ros
 from thymio_sim_ros.cli.servers import address_argument, port_argument
 from thymio_sim_ros.device.layout import THYMIO
@@ -34,11 +36,10 @@ __all__ = ["run"]
 
 PRELOADED = "thymio_sim_ros.cli.preload"
 
-FIRST_PORT = 8100
+PORT = 8100
 FIRST_DOMAIN = 1
 LAST_DOMAIN = 232
 """The highest ROS domain whose ports exist (docs.ros.org, "The ROS_DOMAIN_ID")."""
-LAST_PORT = 65_535
 
 
 def run(argv: Sequence[str]) -> int:
@@ -51,7 +52,8 @@ def run(argv: Sequence[str]) -> int:
     except ClassError as error:
         raise UsageError(str(error)) from error
     check_files(given.playground, given.program, "", THYMIO)
-    options = SuiteOptions(given.address, given.first_port, given.playground, given.program, _first_domain(given))
+    options = SuiteOptions(given.playground, given.program, _first_domain(given))
+    place = ClassAddress(given.address, given.port, TrustedProxies(given.trusted_proxy))
     if options.first_domain is None:
         preload(PRELOADED, given.playground)
     with contextlib.ExitStack() as stack:
@@ -63,9 +65,10 @@ def run(argv: Sequence[str]) -> int:
             raise UsageError(str(error)) from error
         except OSError as error:
             raise UsageError(f"{error.filename}: {error.strerror}; expected a file that can be written") from error
-        _check_ports(options, places)
+        _check_domains(options, places)
+        check_port(place.address, place.port, "the class", "--port")
         with asyncio.Runner(loop_factory=asyncio.SelectorEventLoop) as runner:  # as `ServerThread`
-            runner.run(_serve(options, folder, places, is_kept=given.folder is not None))
+            runner.run(_serve(place, Classroom(places, options, folder), is_kept=given.folder is not None))
     return 0
 
 
@@ -79,23 +82,21 @@ def _first_domain(given: argparse.Namespace) -> int | None:
     return None
 
 
-async def _serve(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place], *, is_kept: bool) -> None:
+async def _serve(place: ClassAddress, classroom: Classroom, *, is_kept: bool) -> None:
     from thymio_sim_ros.classroom.server import serve_class  # aiohttp: not for the check of the command line
 
-    classroom = Classroom(places, options, folder)
-    listeners = listen(options.address, options.first_port)
+    listeners = listen(place.address, place.port)
     page = resources.page()
-    loopback = is_loopback(options.address)
     tasks = [
         asyncio.create_task(classroom.run()),
-        asyncio.create_task(serve_class(listeners, classroom, page, folder.teacher_token, is_loopback=loopback)),
+        asyncio.create_task(serve_class(listeners, classroom, page, place)),
     ]
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
     # Not `loop.add_signal_handler`, which Windows does not have: handlers run when the loop wakes there, twice a second
     for number in END_SIGNALS:
         signal.signal(number, lambda _number, _frame: loop.call_soon_threadsafe(stop.set))
-    print_text(_banner(options, folder, places, is_kept=is_kept))
+    print_text(_banner(place, classroom, is_kept=is_kept))
     if page is None:
         print_text(resources.PAGE_BUILD_HINT)
     ended = asyncio.create_task(stop.wait())
@@ -112,19 +113,22 @@ async def _serve(options: SuiteOptions, folder: ClassFolder, places: Sequence[Pl
             raise result
 
 
-def _banner(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place], *, is_kept: bool) -> str:
-    access = "this computer only" if is_loopback(options.address) else "everyone in your network with a link"
+def _banner(place: ClassAddress, classroom: Classroom, *, is_kept: bool) -> str:
+    folder, options = classroom.folder, classroom.options
+    numbers = [seat.place.number for seat in classroom.seats.values()]
+    access = "this computer only" if place.is_loopback else "everyone in your network with the code or a link"
     kept = "kept" if is_kept else "lost at the end: keep them with --folder"
     if options.first_domain is None:
         graph = "embedded graphs: nodes of pupils reach their robots by `thymio-sim node`; --ros is for other ROS nodes"
     else:
-        domains = sorted(options.first_domain + place.number for place in (places[0], places[-1]))
+        domains = sorted(options.first_domain + number for number in (numbers[0], numbers[-1]))
         graph = f"ROS_DOMAIN_ID {domains[0]} to {domains[1]}, {describe_range(discovery(os.environ))}"
     return "\n".join(
         [
             f"ROS       {graph}",
-            f"Teacher   {describe_urls('http', options.address, options.first_port, '/', folder.teacher_token)}",
-            f"Pupils    {len(places)}; their links are on the teacher's page, as a sheet to print",
+            f"Teacher   {describe_urls('http', place.address, place.port, '/teacher/', folder.teacher_token)}",
+            f"Pupils    {describe_urls('http', place.address, place.port, '/')}, code {folder.room_code}",
+            f"Places    {len(numbers)}; the teacher's page has a QR code for the room, and a link for each pupil",
             f"Access    {access}",
             f"Programs  {kept}",
             "Stop      Ctrl-C",
@@ -132,21 +136,13 @@ def _banner(options: SuiteOptions, folder: ClassFolder, places: Sequence[Place],
     )
 
 
-def _check_ports(options: SuiteOptions, places: Sequence[Place]) -> None:
-    """Raise UsageError for ports or domains that cannot be used."""
+def _check_domains(options: SuiteOptions, places: Sequence[Place]) -> None:
+    """Raise UsageError for domains that do not exist."""
     last = max(places, key=lambda place: place.number)
-    if options.foxglove_port(last) > LAST_PORT:
-        raise UsageError(f"--first-port {options.first_port}: the last port would be {options.foxglove_port(last)}")
     if (domain := options.domain(last)) is not None and domain > LAST_DOMAIN:
         raise UsageError(
             f"--first-domain {options.first_domain}: the last domain would be {domain}, expected at most {LAST_DOMAIN}"
         )
-    ports = [port for place in places for port in (options.port(place), options.foxglove_port(place))]
-    for port in (options.first_port, *ports):
-        try:
-            check_free(options.address, port)
-        except OSError as error:
-            raise UsageError(f"port {port}: {error.strerror}; choose others with --first-port") from error
 
 
 def _domain_argument(text: str) -> int:
@@ -186,15 +182,15 @@ def _parser() -> argparse.ArgumentParser:
         type=address_argument,
         default=SuiteConfig.address,
         metavar="IPV4",
-        help="address on which all pages listen; 0.0.0.0 is the whole network (default: %(default)s)",
+        help="address on which the class listens; 0.0.0.0 is the whole network (default: %(default)s)",
     )
     parser.add_argument(
-        "--first-port",
+        "--port",
         type=port_argument,
-        default=FIRST_PORT,
-        metavar="PORT",
-        help="port of the teacher's page; each pupil needs the next two (default: %(default)s)",
+        default=PORT,
+        help="port of the class, for the teacher and all pupils (default: %(default)s)",
     )
+    add_proxy_option(parser)
     add_graph_options(parser, default="the embedded graph, which takes half of the machine")
     parser.add_argument(
         "--first-domain",

@@ -39,6 +39,7 @@ _UNKNOWN_TYPE = "application/octet-stream"
 _COMPRESSED = frozenset({".html", ".css", ".js", ".mjs", ".json", ".svg", ".wasm"})
 _HASHED = re.compile(r".+-[\w-]{8}\.\w+")
 """Names of files with a hash of their content, which therefore never changes."""
+_INDEX = "index.html"
 _PLAYGROUNDS, _PLAYGROUND_ENDING = "playgrounds", ".json"
 
 
@@ -59,14 +60,10 @@ class Content:
     `/config.json` is given, `/shapes.json` declares the installed shapes.
     """
 
-    def __init__(self, folder: Path | None, config: bytes, *, index: str = "index.html") -> None:
-        """`folder` has the built page, None if it has not been built; `config` is the JSON text of `/config.json`.
-
-        `index` is the file of the path `/`.
-        """
+    def __init__(self, folder: Path | None, config: bytes) -> None:
+        """`folder` has the built page, None if it has not been built; `config` is the JSON text of `/config.json`."""
         self._folder = None if folder is None else folder.resolve()
         self._config = _document(config, ".json")
-        self._index_file = index
         self._index = PlaygroundIndex()
         self._files: dict[Path, tuple[tuple[int, int], Document]] = {}
         self._playgrounds: dict[str, tuple[bytes, Document]] = {}
@@ -90,7 +87,7 @@ class Content:
             return self._shapes
         if len(names) == 2 and names[0] == _PLAYGROUNDS and names[1].endswith(_PLAYGROUND_ENDING):
             return self._playground(names[1].removesuffix(_PLAYGROUND_ENDING))
-        return self._file(names or (self._index_file,))
+        return self._file(names or (_INDEX,))
 
     @functools.cached_property
     def _shapes(self) -> Document:

@@ -43,30 +43,44 @@ class Page:
         """End the helper threads, which read documents for a moment at most."""
         self._pool.shutdown(cancel_futures=True)
 
-    async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
-        """The response to a request."""
-        start_answer(request)
+    def refusal(self, request: web.BaseRequest) -> web.StreamResponse | None:
+        """The response to a request for another name of this computer; None: it may be answered."""
         host = request.headers.get("Host")
-        if host is not None and not self._settings.is_allowed_host(host_name(host)):
-            self._report(
-                "host", "request with another name of this computer rejected; see parameter allowed_hosts of web_ui"
-            )
-            return text_response(403, "This address is not one of this server's. Open it by localhost.")
+        if host is None or self._settings.is_allowed_host(host_name(host)):
+            return None
+        start_answer(request)
+        self._report(
+            "host", "request with another name of this computer rejected; see parameter allowed_hosts of web_ui"
+        )
+        return text_response(403, "This address is not one of this server's. Open it by localhost.")
+
+    async def answer(self, request: web.BaseRequest, path: str | None = None) -> web.StreamResponse:
+        """The response to a request; `path` is that of the file, None if it is that of the request."""
+        if (refusal := self.refusal(request)) is not None:
+            return refusal
+        start_answer(request)
         if request.method not in ("GET", "HEAD"):
             response = text_response(405, "Only GET and HEAD are answered.", {"Allow": _METHODS})
             response.force_close()
             return response
-        path = request.raw_path.partition("?")[0]
+        found = await self.file(request, request.raw_path.partition("?")[0] if path is None else path)
+        return text_response(404, "There is no such file.") if found is None else found
+
+    async def file(self, request: web.BaseRequest, path: str) -> web.StreamResponse | None:
+        """The response to GET and HEAD of a file; None if there is no such file."""
         try:
             document = await asyncio.get_running_loop().run_in_executor(self._pool, self._content.find, path)
         except PlaygroundError as error:
+            start_answer(request)
             return text_response(422, str(error))
-        if document is None and not self._content.is_built:
-            page = f"<!doctype html><meta charset=utf-8><title>Thymio</title><p>{PAGE_BUILD_HINT}</p>"
-            return _response(503, page.encode(), TYPES[".html"], {"Cache-Control": "no-store"})
-        if document is None:
-            return text_response(404, "There is no such file.")
-        return await self._document(request, document)
+        if document is not None:
+            start_answer(request)
+            return await self._document(request, document)
+        if self._content.is_built:
+            return None
+        start_answer(request)
+        page = f"<!doctype html><meta charset=utf-8><title>Thymio</title><p>{PAGE_BUILD_HINT}</p>"
+        return _response(503, page.encode(), TYPES[".html"], {"Cache-Control": "no-store"})
 
     async def _document(self, request: web.BaseRequest, document: Document) -> web.StreamResponse:
         headers = {

@@ -22,6 +22,8 @@
  */
 /** @typedef {{ pupils: Pupil[], shown: string | null }} ClassState */
 
+/** @typedef {{ address: string, code: string, url: string, qr: string }} Room */
+
 /** The server does not accept the token of this page. */
 export class TokenError extends Error {}
 
@@ -44,6 +46,11 @@ export class ClassApi {
   /** @returns {Promise<{ name: string, url: string, qr: string }[]>} */
   async sheet() {
     return (await this.#fetch("sheet")).json();
+  }
+
+  /** The address for pupils with its code, and both as a link with its QR code. @returns {Promise<Room>} */
+  async room() {
+    return (await this.#fetch("room")).json();
   }
 
   async programs() {

@@ -3,6 +3,7 @@
 import { h, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { drawPlan } from "./plan.js";
+import { qrImages } from "./sheet.js";
 
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 
@@ -63,6 +64,30 @@ export function ask({ question, verb, t, act }) {
       h("button", { type: "button", class: "btn line", "data-verb": "cancel", onclick: () => dialog.close() }, t("cancel")),
       h("button", { type: "button", class: "btn you", "data-verb": "yes", onclick: yes }, verb),
     ),
+  );
+  open(dialog);
+}
+
+/**
+ * How pupils reach the class, as large as the window, for the projector.
+ *
+ * @param {import("./api.js").Room} room
+ * @param {Translate} t
+ */
+export function showRoom({ address, code, qr }, t) {
+  const close = () => dialog.close();
+  const dialog = h(
+    "dialog",
+    { class: "card class-present class-room", "aria-labelledby": "room-address" },
+    h(
+      "div",
+      { class: "row" },
+      h("p", { class: "grow" }, t("room.help")),
+      h("button", { type: "button", class: "btn icon", "data-verb": "close", "aria-label": t("close"), onclick: close }, icon("close")),
+    ),
+    h("h2", { id: "room-address" }, address),
+    h("h2", { class: "num" }, t("room.code", { code })),
+    ...qrImages(qr),
   );
   open(dialog);
 }

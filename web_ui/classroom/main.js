@@ -11,7 +11,7 @@ import { translator } from "../i18n/index.js";
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { ClassApi, TokenError } from "./api.js";
-import { ask, askMessage, present } from "./dialogs.js";
+import { ask, askMessage, present, showRoom } from "./dialogs.js";
 import { PupilCard } from "./pupil_card.js";
 import { needsHelp } from "./pupil_state.js";
 import { sheetOf } from "./sheet.js";
@@ -79,6 +79,7 @@ class TeacherPage {
       this.#button("runAll", "run", () => this.api.pause(null, false)),
       this.#button("messageAll", "message", () => this.#message(null)),
       this.#button("collect", "save", () => this.#collect()),
+      this.#button("room", "class", async () => showRoom(await this.api.room(), t)),
       this.#button("sheet", "list", () => this.#sheet()),
     );
     const missing = h("p", { class: "note-box wait class-missing", role: "status", hidden: true });

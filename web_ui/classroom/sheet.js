@@ -3,6 +3,11 @@
 import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 
+/** The image of a QR code; none where the server cannot draw it. @param {string} qr */
+export function qrImages(qr) {
+  return qr === "" ? [] : [h("img", { src: `data:image/svg+xml,${encodeURIComponent(qr)}`, alt: "" })];
+}
+
 /**
  * @param {readonly { name: string, url: string, qr: string }[]} links
  * @param {import("../i18n/index.js").Translate} t
@@ -26,7 +31,7 @@ export function sheetOf(links, t, close) {
         h(
           "li",
           { class: "class-link" },
-          ...(qr === "" ? [] : [h("img", { src: `data:image/svg+xml,${encodeURIComponent(qr)}`, alt: "" })]),
+          ...qrImages(qr),
           h("div", { class: "grow" }, h("h2", {}, name), h("a", { href: url, target: "_blank", rel: "noreferrer" }, url)),
         ),
       ),

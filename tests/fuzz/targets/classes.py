@@ -10,7 +10,7 @@ import zipfile
 from collections.abc import Iterator
 from functools import cache
 
-from tests.classroom.test_requests import OPTIONS
+from tests.classroom.test_requests import OPTIONS, URL
 from tests.fuzz.target import FOLDER, Target, lines, text
 from thymio_sim_ros.bridge.protocol.wire import data_head
 from thymio_sim_ros.classroom.bridge_client import BridgeClient
@@ -58,7 +58,7 @@ def _classroom() -> Classroom:
 def _request(data: bytes) -> None:
     """A request with the token of the teacher."""
     name, body = lines(data, 2)
-    asyncio.run(answer(_classroom(), "POST", name.decode("latin-1"), body))
+    asyncio.run(answer(_classroom(), "POST", name.decode("latin-1"), body, URL))
 
 
 def _suite(data: bytes) -> None:

@@ -1,0 +1,31 @@
+"""Where a class listens, and its URL."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thymio_sim_ros.bridge.access import is_loopback
+from thymio_sim_ros.bridge.visitor import NO_PROXIES, TrustedProxies, Visitor
+from thymio_sim_ros.names.addresses import urls
+from thymio_sim_ros.web.hosts import host_name, is_loopback_name
+
+__all__ = ["ClassAddress"]
+
+
+@dataclass(frozen=True, slots=True)
+class ClassAddress:
+    """Where a class listens, and the proxies in front of it."""
+
+    address: str
+    port: int
+    trusted_proxies: TrustedProxies = NO_PROXIES
+
+    @property
+    def is_loopback(self) -> bool:
+        """Whether only this computer reaches the class."""
+        return is_loopback(self.address) and not self.trusted_proxies
+
+    def public_url(self, visitor: Visitor) -> str:
+        """The URL of the class for other computers: as this visitor sees it, unless only its own computer does."""
+        is_own = not visitor.is_proxied and is_loopback_name(host_name(visitor.host or ""))
+        return urls("http", self.address, self.port, "/")[-1] if visitor.url is None or is_own else visitor.url

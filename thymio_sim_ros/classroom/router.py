@@ -1,0 +1,144 @@
+"""The one port of a class: path → the page to pick a name, the teacher's page, or a pupil's page and suite.
+
+/                 the page on which a pupil picks a name; room/names is its list, which needs the code of the room
+/teacher/         the teacher's page; teacher/class/… is its interface (`requests`), which needs the teacher's token
+/p/<id>/          a pupil: files of the page come from here, all other requests are passed on to the suite
+"""
+
+from __future__ import annotations
+
+import json
+import urllib.parse
+from collections.abc import Callable, Mapping, Sequence
+
+from aiohttp import web
+
+from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError, given_token
+from thymio_sim_ros.bridge.visitor import TrustedProxies, Visitor
+from thymio_sim_ros.classroom.classroom import Classroom
+from thymio_sim_ros.classroom.requests import MAX_BODY, Answer, RefusalError, answer
+from thymio_sim_ros.classroom.seat import Seat
+from thymio_sim_ros.classroom.suite_proxy import SuiteProxy, is_upgrade
+from thymio_sim_ros.web.forwarded import as_sent, visitor_of
+from thymio_sim_ros.web.http_connections import COMMON_HEADERS, start_answer, text_response
+from thymio_sim_ros.web.server import Page
+
+__all__ = ["Router"]
+
+_CONFIG = "/config.json"
+"""A file of the suite: it says whether the suite answers."""
+
+
+class Router:
+    """Creates the responses to requests."""
+
+    def __init__(
+        self,
+        classroom: Classroom,
+        page: Page,
+        proxy: SuiteProxy,
+        trusted_proxies: TrustedProxies,
+        public_url: Callable[[Visitor], str],
+    ) -> None:
+        """`public_url` returns the address of the class for pupils, as the visitor sees it."""
+        self._classroom, self._page, self._proxy = classroom, page, proxy
+        self._teacher = TokenCheck(Tokens(classroom.folder.teacher_token))
+        self._room = TokenCheck(Tokens(classroom.folder.room_code))
+        self._trusted_proxies, self._public_url = trusted_proxies, public_url
+
+    async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
+        """The response to a request."""
+        visitor = visitor_of(request, self._trusted_proxies)
+        request = as_sent(request, visitor)
+        if (refusal := self._page.refusal(request)) is not None:
+            return refusal
+        try:
+            return await self._route(request, visitor)
+        except RefusalError as error:
+            start_answer(request)
+            response = text_response(error.status, str(error))
+            response.force_close()  # the rest of a body may still arrive
+            return response
+
+    async def _route(self, request: web.BaseRequest, visitor: Visitor) -> web.StreamResponse:
+        path, mark, query = request.raw_path.partition("?")
+        match names := _names(path):
+            case ["teacher"]:
+                return _redirect(request, f"teacher/{mark}{query}")
+            case ["teacher", "class", *rest]:
+                await self._check(self._teacher, request)
+                body, url = await _body(request), self._public_url(visitor)
+                return _response(await answer(self._classroom, request.method, "/".join(rest), body, url))
+            case ["teacher", *rest]:
+                return await self._page.answer(request, _file(rest, "class.html"))
+            case ["room", "names"]:
+                await self._check(self._room, request)
+                start_answer(request)
+                return _response(Answer(json.dumps(self._classroom.room()).encode()))
+            case ["p", pupil] if pupil in self._classroom.seats:
+                return _redirect(request, f"{pupil}/{mark}{query}")
+            case ["p", pupil, *rest] if pupil in self._classroom.seats:
+                seat = self._classroom.seats[pupil]
+                return await self._of_pupil(request, visitor, seat, f"{_file(rest, '')}{mark}{query}")
+            case [first, *_] if first != "p":
+                return await self._page.answer(request, _file(names, "join.html"))
+        raise RefusalError(404, "There is no such page in this class.")
+
+    async def _of_pupil(
+        self, request: web.BaseRequest, visitor: Visitor, seat: Seat, target: str
+    ) -> web.StreamResponse:
+        path = target.partition("?")[0]
+        if request.method in ("GET", "HEAD") and path != _CONFIG and not is_upgrade(request):
+            file = await self._page.file(request, "/index.html" if path == "/" else path)
+            if file is not None:
+                return file
+        return await self._proxy.forward(request, target, seat.port, visitor, seat.place.name)
+
+    async def _check(self, tokens: TokenCheck, request: web.BaseRequest) -> None:
+        """Raise RefusalError without the token. It is in a header, which no foreign page can send."""
+        given = given_token("", request.headers.getall("Authorization", []))
+        origin, host = request.headers.get("Origin"), request.headers.get("Host")
+        try:
+            role = await tokens.role(given, request.remote or "", origin=origin, host=host)
+        except TooManyAttemptsError as error:
+            raise RefusalError(429, str(error)) from error
+        if role is None:
+            what = "token of the teacher" if tokens is self._teacher else "code of the room"
+            raise RefusalError(401, f"expected the {what}: Authorization: Bearer …")
+
+
+def _names(path: str) -> Sequence[str]:
+    """The parts of a path, with their escapes; none for a path that leads out of its folder."""
+    names = path.removeprefix("/").split("/")
+    plain = [urllib.parse.unquote(name) for name in names]
+    if not path.startswith("/") or any(name in (".", "..") or "/" in name or "\\" in name for name in plain):
+        return ()
+    return names
+
+
+def _file(names: Sequence[str], index: str) -> str:
+    """The path of a file; that of its folder means `index`."""
+    return f"/{'/'.join(names) or index}"
+
+
+def _redirect(request: web.BaseRequest, place: str) -> web.StreamResponse:
+    """To a place relative to the requested one: a proxy may serve it under another path."""
+    start_answer(request)
+    return text_response(308, place, {"Location": place})
+
+
+def _response(done: Answer) -> web.StreamResponse:
+    headers: Mapping[str, str] = {**COMMON_HEADERS, "Content-Type": done.media_type, "Cache-Control": "no-store"}
+    file = {"Content-Disposition": f'attachment; filename="{done.file}"'} if done.file else {}
+    return web.Response(body=done.body, headers={**headers, **file})
+
+
+async def _body(request: web.BaseRequest) -> bytes:
+    body = bytearray()
+    if request.body_exists:
+        async for chunk in request.content.iter_any():
+            body += chunk
+            if len(body) > MAX_BODY:
+                raise RefusalError(413, f"expected a body of at most {MAX_BODY} bytes")
+    start_answer(request)
+    return bytes(body)
