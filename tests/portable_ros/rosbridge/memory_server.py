@@ -128,17 +128,24 @@ class MemoryServer:
     _subscribe = _advertise_service = _advertise
 
     def _unadvertise(self, program: Program, operation: Operation) -> None:
+        self._check_known(program, operation)
         self._ends = [(one, end) for one, end in self._ends if (one, end["id"]) != (program, operation["id"])]
         self._send_graphs()
 
     _unsubscribe = _unadvertise_service = _unadvertise
 
     def _publish(self, program: Program, operation: Operation) -> None:
+        self._check_known(program, operation)
         reached = set()
         for one, end in self._ends:
             if end["op"] == "subscribe" and end["topic"] == operation["topic"] and (self._id(end), one) not in reached:
                 reached.add((self._id(end), one))
                 self.tell(one, {"op": "publish", "topic": end["topic"], **self._id_field(end), "msg": operation["msg"]})
+
+    def _check_known(self, program: Program, operation: Operation) -> None:
+        """Check that an operation is about an endpoint: for a suite, the one of its node with its id."""
+        ends = [end for one, end in self._ends if one is program and end["id"] == operation["id"]]
+        assert [end.get("node") for end in ends] == [operation.get("node")], operation
 
     def _call_service(self, program: Program, operation: Operation) -> None:
         name = operation["service"]

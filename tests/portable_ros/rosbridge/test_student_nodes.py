@@ -160,6 +160,7 @@ def test_a_node_drives_the_robot_with_parameters_that_others_change(lab: Lab, fi
     name = next(name for name in lab.node.get_node_names() if name not in ("observer", "simulator"))
     names = set(lab.node.get_node_names())
     assert names > {"observer", "simulator"}, name
+    assert len(lab.node.get_publishers_info_by_topic("/cmd_vel")) == 1, "the node's own publisher only"
     _ends_cleanly(program)
     lab.until(lambda: len(lab.node.get_node_names()) == len(names) - 1)
 

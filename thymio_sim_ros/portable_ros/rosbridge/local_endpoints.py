@@ -77,10 +77,10 @@ class Announcements:
         """The endpoints of a topic or a service."""
         return [one for one in self._by_id.values() if one.kind is kind and one.name == name]
 
-    def id_of(self, end: object) -> str | None:
-        """The id of an endpoint; None if the server does not know it."""
+    def place_of(self, end: object) -> Operation:
+        """The fields by which operations name an endpoint; none if the server does not know it."""
         found = self._ends.get(id(end))
-        return found[1] if found else None
+        return self._place(*found) if found else {}
 
     def id_of_node(self, node: object) -> str | None:
         """The id of a node; None if the server does not know it."""
@@ -120,8 +120,6 @@ class Announcements:
         operation["type"] = endpoint.type_name
         if endpoint.kind is not Kind.PUBLISHER and (self._is_extended or endpoint.kind is Kind.SUBSCRIPTION):
             operation["compression"] = _RAW
-        if self._is_extended:
-            operation["node"] = self.id_of_node(endpoint.node)
         if endpoint.kind is Kind.SERVICE:
             return operation
         profile = endpoint.end.qos_profile
@@ -134,4 +132,7 @@ class Announcements:
 
     def _operation(self, op: str, endpoint: LocalEndpoint, wire_id: str) -> Operation:
         place = "service" if endpoint.kind is Kind.SERVICE else "topic"
-        return {"op": op, "id": wire_id, place: endpoint.name}
+        return {"op": op, place: endpoint.name, **self._place(endpoint, wire_id)}
+
+    def _place(self, endpoint: LocalEndpoint, wire_id: str) -> Operation:
+        return {"id": wire_id, **({"node": self.id_of_node(endpoint.node)} if self._is_extended else {})}

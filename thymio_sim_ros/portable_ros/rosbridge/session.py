@@ -174,8 +174,8 @@ class Session:
             return None
         self._sent[publisher] = item.sample.sequence_number
         operation: Operation = {"op": "publish", "topic": item.topic}
-        if self._announcements is not None and (wire_id := self._announcements.id_of(publisher)) is not None:
-            operation["id"] = wire_id
+        if self._announcements is not None:
+            operation |= self._announcements.place_of(publisher)
         operation["msg"] = self._payloads.outgoing(item.sample.data, item.type_name)
         return operation
 
