@@ -88,21 +88,8 @@ docs: $(VENV)/.ready-docs  ## build the site of the documentation in build/site
 	@$(PYTHON) -m sphinx -q -W --keep-going -c docs . build/site
 	@echo "The site is build/site/docs/index.html"
 
-# The tools are no wheels, but pure Python, and are built from the sources of Jazzy.
-ROS2CLI := https://github.com/ros2/ros2cli/archive/refs/tags/0.32.2.tar.gz
-ROSIDL_RUNTIME_PY := https://github.com/ros2/rosidl_runtime_py/archive/refs/tags/0.13.1.tar.gz
-hash := \#
-ROS2_VERBS := ros2interface ros2node ros2param ros2pkg ros2run ros2service ros2topic
-ros2: $(VENV)/.ready-run  ## add the command `ros2` to an environment without a ROS installation
-	@if ! $(PYTHON) -c 'import rclpy' 2>/dev/null; then \
-	    echo "ROS wheels exist for Linux x86-64 only. On this platform install ROS 2 Jazzy (https://docs.ros.org/en/jazzy/Installation.html), source its setup file and repeat." >&2; \
-	    exit 2; \
-	fi
-	@if [ -n "$(EXTRAS_RUN)" ]; then \
-	    $(PIP) install argcomplete importlib_metadata packaging psutil && \
-	    $(PIP) install --no-deps 'rosidl_runtime_py @ $(ROSIDL_RUNTIME_PY)' \
-	        $(foreach part,ros2cli $(ROS2_VERBS),'$(part) @ $(ROS2CLI)$(hash)subdirectory=$(part)'); \
-	fi
+ros2: $(VENV)/.ready-run  ## add the tools of `ros2` to an environment without a ROS installation
+	@if [ -n "$(EXTRAS_RUN)" ]; then $(PYTHON) -m thymio_sim_ros ros2 --install; fi
 
 web-test: $(VENV)/.created  ## run the tests of the page's modules, and check their types
 	@$(PYTHON) web_ui/build.py --ready || $(INSTALL_NODE)

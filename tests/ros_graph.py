@@ -31,6 +31,7 @@ _REAL = (
     "ros/test_launch.py",
     "ros/test_namespace.py",
     "ros/test_processes.py",
+    "ros/test_ros_tools.py",
     "ros/test_student_node.py",
     "ros/test_suite_process.py",
     "test_course.py",

@@ -95,7 +95,17 @@ RULES = {
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.ros.foxglove.rosbridge.values": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS | {"cbor2", "numpy"}),
-    f"{OURS}.bags": Rule(_names("bags", "ros.foxglove.schemas", "ros.foxglove.types"), ROS | {"rosbags"}),
+    f"{OURS}.bags": Rule(
+        _names("bags", "end_signals", "ros.foxglove.schemas", "ros.foxglove.types"), ROS | {"rosbags"}
+    ),
+    # the verbs of ros2 that tutorials need: a node of its own, on any graph
+    f"{OURS}.ros_commands": Rule(
+        _names("bags.qos", "portable_ros.messages.message_class", "ros_commands")
+        | _names("ros.foxglove.json_messages", "ros.foxglove.schemas", "ros.foxglove.types"),
+        ROS | {"yaml"},
+    ),
+    f"{OURS}.ros_commands.arguments": Rule(frozenset()),
+    f"{OURS}.bags.arguments": Rule(frozenset()),
     f"{OURS}.tf": Rule(
         _names("course_packages", "tf", "ros.compat.tf2_messages", "ros.rclpy_ext.throttled_log"),
         ROS | {"numpy", "tf2_geometry_msgs", "tf2_ros", "tf_transformations"},
@@ -149,6 +159,7 @@ STARTERS = {
     f"{OURS}.testing.ros",
     f"{OURS}.pytest_plugin",
     f"{OURS}.ros",
+    f"{OURS}.ros_commands",
     f"{OURS}.tf",
 }
 
@@ -259,6 +270,7 @@ def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
         f"{OURS}.bags",
         f"{OURS}.course_packages.packages",
         f"{OURS}.ros",
+        f"{OURS}.ros_commands",
         f"{OURS}.testing.ros",
         f"{OURS}.lockstep",
         f"{OURS}.launch",

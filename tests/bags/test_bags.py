@@ -20,10 +20,10 @@ from std_msgs.msg import String
 from tests import pages
 from tests.patience import PATIENCE_S
 from tests.systems import posix
-from thymio_sim_ros.bags import commands
 from thymio_sim_ros.bags.errors import BagError
 from thymio_sim_ros.bags.player import Player
 from thymio_sim_ros.bags.recorder import Recorder
+from thymio_sim_ros.cli import main
 
 RETAINED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -179,7 +179,7 @@ def test_what_cannot_be_written_or_read_is_said(ros, talker, tmp_path):
 @pytest.mark.parametrize("rate", ["0", "-1", "inf", "nan", "fast"])
 def test_a_wrong_rate_is_refused(rate, capsys):
     with pytest.raises(SystemExit):
-        commands.main(["play", "bag", "--rate", rate])
+        main.main(["play", "bag", "--rate", rate])
     assert "--rate" in capsys.readouterr().err
 
 
@@ -201,6 +201,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from std_msgs.msg import String
 from thymio_sim_ros.bags import commands
+from thymio_sim_ros.cli.ros_tools import parser_of
 
 rclpy.init()
 node = rclpy.create_node("talker")
@@ -231,7 +232,7 @@ def spin():
 
 threading.Thread(target=spin, daemon=True).start()
 rclpy.init = lambda **_: None  # the program has one context
-sys.exit(commands.main(["record", "-o", sys.argv[1], "said"]))
+sys.exit(commands.run(parser_of("record").parse_args(["record", "-o", sys.argv[1], "said"]), []))
 """
 
 

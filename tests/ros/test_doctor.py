@@ -32,7 +32,7 @@ def suite(ros, tmp_path):
 
 
 def start_doctor(*arguments):
-    code = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(['doctor', *sys.argv[1:]]))"
+    code = "import sys; from thymio_sim_ros.cli.main import main; sys.exit(main(['doctor', '--ros', *sys.argv[1:]]))"
     command = [sys.executable, "-c", code, *arguments]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
@@ -57,7 +57,7 @@ def doctor(ros, *arguments, meanwhile=lambda: None):
 def test_a_robot_that_nobody_drives_is_well(ros, suite):
     code, output, errors = doctor(ros)
     assert (code, errors) == (0, "")
-    assert "Playground desk, robots: one without a name; ROS_DOMAIN_ID" in output
+    assert "Playground desk, robots: one without a name; ROS 2, ROS_DOMAIN_ID" in output
     assert "Nothing is wrong." in output
     assert "/cmd_vel has no publisher: the robot moves by its program and from the page only" in output
 
@@ -127,5 +127,5 @@ def test_an_unknown_robot_is_an_error_with_the_known_ones(ros, suite):
 def test_without_a_simulator_it_says_what_to_start(ros):
     code, output, errors = doctor(ros)
     assert (code, output) == (2, "")
-    assert "no simulator found in ROS_DOMAIN_ID" in errors
+    assert "no simulator found on ROS 2, ROS_DOMAIN_ID" in errors
     assert "start `thymio-sim`" in errors

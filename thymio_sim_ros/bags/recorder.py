@@ -17,9 +17,8 @@ from thymio_sim_ros.bags.errors import BagError
 from thymio_sim_ros.ros.foxglove.schemas import message_definition
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 
-__all__ = ["STORAGES", "Recorder"]
+__all__ = ["Recorder"]
 
-STORAGES = {"mcap": StoragePlugin.MCAP, "sqlite3": StoragePlugin.SQLITE3}
 DISCOVERY_S = 0.1
 
 
@@ -46,7 +45,7 @@ class Recorder:
         self._known: set[tuple[str, str]] = set()
         self._subscriptions: list[Any] = []
         try:
-            self._writer = Writer(path, version=Writer.VERSION_LATEST, storage_plugin=STORAGES[storage])
+            self._writer = Writer(path, version=Writer.VERSION_LATEST, storage_plugin=StoragePlugin[storage.upper()])
             self._writer.open()
         except (OSError, WriterError) as error:
             raise BagError(f"{path}: cannot be written: {error}") from error

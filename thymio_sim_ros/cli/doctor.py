@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from aseba_vm.cli.output import standard_output
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.ros_graph import check_ros
+from thymio_sim_ros.cli.membership import add_membership_options, membership
 
 if TYPE_CHECKING:
     from thymio_sim_ros.ros.doctor import Examination, TopicUse
@@ -30,7 +29,7 @@ not fit, rejected messages, a paused simulation. Exit code: 0 nothing is wrong, 
 
 
 def run(argv: Sequence[str]) -> int:
-    """Examine the running suite; return the exit code. Raises UsageError without ROS or without a simulator."""
+    """Examine the running suite; return the exit code. Raises UsageError without a simulator."""
     parser = argparse.ArgumentParser(
         prog="thymio-sim doctor",
         description="Say why the robot does not do what a node wants.",
@@ -40,17 +39,15 @@ def run(argv: Sequence[str]) -> int:
     )
     parser.add_argument("robot", nargs="?", default="", help="name of a robot, if there are several; default: all")
     parser.add_argument("--json", action="store_true", help="print JSON, for programs")
+    add_membership_options(parser)
     options = parser.parse_args(argv)
-    check_ros()
-    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    from thymio_sim_ros.ros.compat import dds_profile
-    from thymio_sim_ros.ros.doctor import NothingFoundError, examine
+    with membership(options, "doctor") as member:
+        from thymio_sim_ros.ros.doctor import NothingFoundError, examine
 
-    try:
-        with dds_profile.used(dds_profile.ANNOUNCING):
-            examination = examine(os.environ, options.robot)
-    except NothingFoundError as error:
-        raise UsageError(str(error)) from error
+        try:
+            examination = examine(member.where, options.robot)
+        except NothingFoundError as error:
+            raise UsageError(str(error)) from error
     with standard_output():
         lines = [json.dumps(asdict(examination), indent=2)] if options.json else _lines(examination)
         sys.stdout.writelines(f"{line}\n" for line in lines)

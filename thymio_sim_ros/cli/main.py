@@ -15,6 +15,8 @@ from thymio_sim_ros.cli.errors import USAGE_ERROR, UsageError
 
 __all__ = ["main"]
 
+ROS_TOOLS = "ros_tools"
+"""The module of several subcommands, which gets their name."""
 COMMANDS: Mapping[str, str] = {
     "runner": "runner",
     "class": "classroom",
@@ -25,7 +27,9 @@ COMMANDS: Mapping[str, str] = {
     "grade": "grade",
     "node": "node",
     "replay": "replay",
+    "ros2": "ros2",
     "sweep": "sweep",
+    **dict.fromkeys(("action", "interface", "param", "play", "record", "service", "topic"), ROS_TOOLS),
 }
 """The module of each subcommand. Only that of the chosen one is imported, which makes the start of the suite faster."""
 
@@ -35,7 +39,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if argv is None else argv)
     module = "suite"
     if arguments and arguments[0] in COMMANDS:
-        module = COMMANDS[arguments.pop(0)]
+        module = COMMANDS[arguments[0]]
+        if module != ROS_TOOLS:
+            del arguments[0]
     command: Callable[[Sequence[str]], int] = import_module(f"thymio_sim_ros.cli.{module}").run
     try:
         return command(arguments)

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import itertools
-import os
-import signal
-import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 from thymio_sim_ros import course_packages
-from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
+from thymio_sim_ros.cli import ros_tools
 from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.cli.membership import add_server_options, connected, interruptible
 from thymio_sim_ros.course_packages import field_checks
-from thymio_sim_ros.names.ports import FOXGLOVE_PORT
 from thymio_sim_ros.portable_ros import import_hook
+from thymio_sim_ros.ros_commands.arguments import NOUNS
 
 __all__ = ["run"]
 
 ROS_ARGS = "--ros-args"
+_NOUN = "node"
+_VERBS = [verb for verb, *_ in NOUNS[_NOUN]]
+"""First words that are no program but a verb of `ros2 node`."""
 _WITH_VALUE = ("--connect", "--token")
 """Options of this command behind the program, too."""
 
@@ -32,11 +31,15 @@ server. Without one, the command waits for it; a lost connection is made again. 
 
   thymio-sim node my_node.py
   thymio-sim node my_node.py --connect ws://teacher:8765 --ros-args -p speed:=0.1
+
+`thymio-sim node list` and `thymio-sim node info NAME` are those of `ros2 node`.
 """
 
 
 def run(argv: Sequence[str]) -> int:
     """Run the program; return the exit code. Raises UsageError for a program that there is not, and a wrong server."""
+    if argv and argv[0] in _VERBS:
+        return ros_tools.run([_NOUN, *argv])
     own, arguments = _split(argv)
     options = _parser().parse_args(own)
     target = options.module or options.file
@@ -72,56 +75,10 @@ def _split(words: Iterable[str]) -> tuple[list[str], list[str]]:
 
 
 def _run_connected(options: argparse.Namespace, target: str, arguments: Sequence[str]) -> int:
-    from thymio_sim_ros.portable_ros.graph.graph import graph_of
     from thymio_sim_ros.portable_ros.program import run_program
-    from thymio_sim_ros.portable_ros.rclpy.context import default_domain
-    from thymio_sim_ros.portable_ros.rosbridge.transport import RosbridgeError, RosbridgeTransport
 
-    codec = _LazyCodec()
-    transport = RosbridgeTransport(graph_of(default_domain()), options.connect, codec, _report, token=options.token)
-    try:
-        transport.start()
-    except RosbridgeError as error:
-        raise UsageError(f"node: {error}") from error
-    try:
-        with _interruptible():
-            return run_program(target, arguments, is_module=options.module is not None)
-    finally:
-        transport.close()
-
-
-@contextlib.contextmanager
-def _interruptible() -> Iterator[None]:
-    """Let Ctrl-C raise KeyboardInterrupt in the program, as in every other one. Outside, it ends the process."""
-    before = signal.getsignal(signal.SIGINT)
-    if before is not signal.SIG_DFL:
-        yield
-        return
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
-def _report(text: str) -> None:
-    print(f"thymio-sim node: {text}", file=sys.stderr, flush=True)
-
-
-class _LazyCodec:
-    """The conversion of messages to JSON, which only servers other than a suite need; imported when it is used."""
-
-    def to_json(self, message: Any) -> bytes:
-        """The UTF-8 JSON of a message."""
-        from thymio_sim_ros.ros.foxglove.json_messages import to_json
-
-        return to_json(message)
-
-    def from_json(self, data: bytes, message_type: type[Any]) -> Any:
-        """The message of a class that UTF-8 JSON stands for. Raises ValueError."""
-        from thymio_sim_ros.ros.foxglove.json_messages import from_json
-
-        return from_json(data, message_type)
+    with connected(options.connect, options.token, "node", waits=True), interruptible():
+        return run_program(target, arguments, is_module=options.module is not None)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -135,26 +92,5 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("file", nargs="?", metavar="FILE", help="the program; all other arguments are its own")
     parser.add_argument("-m", dest="module", metavar="MODULE", help="run a module in place of a file")
-    parser.add_argument(
-        "--connect",
-        type=_url_argument,
-        default=f"ws://127.0.0.1:{FOXGLOVE_PORT}",
-        metavar="URL",
-        help="address of the server: the one that `thymio-sim` prints for Foxglove (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--token",
-        default=os.environ.get(TOKEN_VARIABLE, ""),
-        metavar="TEXT",
-        help=f"token of the server, if its address has none (default: variable {TOKEN_VARIABLE})",
-    )
+    add_server_options(parser)
     return parser
-
-
-def _url_argument(text: str) -> str:
-    scheme, separator, rest = text.partition("://")
-    if not separator:
-        scheme, rest = "ws", text
-    if scheme not in ("ws", "wss") or not rest or rest.startswith(("/", ":")):
-        raise argparse.ArgumentTypeError(f"found {text!r}, expected an address such as ws://localhost:8765")
-    return f"{scheme}://{rest}"

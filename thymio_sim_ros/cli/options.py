@@ -44,6 +44,7 @@ example:
   thymio-sim runner --log run.jsonl; thymio-sim replay run.jsonl   (repeats the run, bit for bit)
   thymio-sim convert maze.playground -o maze.json            (from Aseba and others; without ROS)
   thymio-sim class --pupils names.csv --folder 5b            (a world and a link for each pupil, a page for the teacher)
+  thymio-sim topic list; thymio-sim record                   (as ros2, also without ROS 2; docs/ros-commands.md)
   thymio-sim foxglove-layout -o thymio.json                  (panels for Foxglove and Lichtblick)
   thymio-sim --robot ser:/dev/ttyACM0 --program my_robot.aesl  (a real robot, without simulator)
   thymio-sim --ros-args -r __ns:=/lab1                       (ROS arguments come last; here a namespace)

@@ -24,7 +24,6 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from std_msgs.msg import String
 
 from thymio_sim_ros.errors import ThymioSimError
-from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 from thymio_sim_ros.ros.interface import qos
 
@@ -80,10 +79,10 @@ class Examination:
     notes: list[str] = field(default_factory=list)
 
 
-def examine(environment: Mapping[str, str], robot: str = "") -> Examination:
-    """Examine the suite of this domain, or one of its robots, for some seconds.
+def examine(where: str, robot: str = "") -> Examination:
+    """Examine the suite of the graph of this process, `where` in words, or one of its robots, for some seconds.
 
-    Raises NothingFoundError if there is no simulator in the domain, or no such robot.
+    Raises NothingFoundError if there is no simulator, or no such robot.
     """
     context = Context()
     rclpy.init(context=context)
@@ -91,7 +90,7 @@ def examine(environment: Mapping[str, str], robot: str = "") -> Examination:
         node = Node(NAME, context=context, enable_rosout=False, start_parameter_services=False)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
-        return _Doctor(node, executor, describe_domain(environment, context.get_domain_id()), robot).examine()
+        return _Doctor(node, executor, where, robot).examine()
     finally:
         rclpy.shutdown(context=context)
 
@@ -114,8 +113,8 @@ class _Doctor:
         self._spin(FIND_S, lambda: self._follow_simulators(followed) and bool(self._statuses) and bool(self._states))
         if not self._states:
             raise NothingFoundError(
-                f"no simulator found in {self._found.where}: start `thymio-sim`, and run this command in a terminal"
-                ' with the same ROS_DOMAIN_ID (`eval "$(thymio-sim env)"`)'
+                f"no simulator found on {self._found.where}: start `thymio-sim`; on ROS 2, run this command in a"
+                ' terminal with the same ROS_DOMAIN_ID (`eval "$(thymio-sim env)"`)'
             )
         for _ in range(LOOKS):  # the first looks may be before the discovery of some nodes
             for use in self._uses():

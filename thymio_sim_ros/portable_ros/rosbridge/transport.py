@@ -34,10 +34,21 @@ class RosbridgeTransport:
     """Makes the nodes of a graph members of the graph of a server. Its thread is a daemon."""
 
     def __init__(
-        self, graph: Graph, url: str, codec: JsonCodec, report: Callable[[str], None], *, token: str = ""
+        self,
+        graph: Graph,
+        url: str,
+        codec: JsonCodec,
+        report: Callable[[str], None],
+        *,
+        token: str = "",
+        waits: bool = True,
     ) -> None:
-        """`codec`: for servers that take no serialized messages; `report` gets lines for the user, from any thread."""
+        """`codec`: for servers that take no serialized messages; `report` gets lines for the user, from any thread.
+
+        `waits`: whether `start` waits for a server if there is none.
+        """
         self._graph, self._url, self._codec, self._report, self._token = graph, url, codec, report, token
+        self._waits = waits
         self._loop: asyncio.AbstractEventLoop | None = None
         self._wake_event = asyncio.Event()
         self._is_woken = False
@@ -57,7 +68,8 @@ class RosbridgeTransport:
     def start(self) -> None:
         """Attach the graph and connect; return once the remote graph is known.
 
-        Waits until there is a server, which is said once. Raises RosbridgeError if it rejects the connection.
+        Waits until there is a server, which is said once. Raises RosbridgeError if it rejects the connection, and
+        without a server if it shall not wait.
         """
         self._graph.attach(self)
         self._thread.start()
@@ -175,6 +187,10 @@ class RosbridgeTransport:
         """Report once that there is no connection; the first time a server may reject it for good."""
         if not self._is_ready.is_set() and isinstance(error, (InvalidHandshake, InvalidURI)):
             self._rejection = RosbridgeError(f"{self._shown}: {_reason(error)}")
+            self._is_ready.set()
+        elif not self._is_ready.is_set() and not self._waits:
+            what = f"found no server at {self._shown} ({_reason(error)}), expected one"
+            self._rejection = RosbridgeError(f"{what}: start `thymio-sim`, or give its address")
             self._is_ready.set()
         elif not self._is_lost:
             self._is_lost = True

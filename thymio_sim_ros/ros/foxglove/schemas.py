@@ -14,15 +14,19 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from thymio_sim_ros.portable_ros.import_hook import is_served
+from thymio_sim_ros.portable_ros.messages.interface_files import text_of
 from thymio_sim_ros.ros.compat.tf2_messages import TF_DEFINITION, TF_TYPE_NAME
 from thymio_sim_ros.ros.foxglove.types import load_type
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message
 
-__all__ = ["message_definition", "service_definitions", "share_folders"]
+__all__ = ["SEPARATOR", "definitions", "message_definition", "service_definitions", "share_folders"]
 
-_SEPARATOR = "=" * 80
+SEPARATOR = "=" * 80
+"""The line between a definition and those of the types that it uses."""
+_PARTS = {"msg": (), "srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 _BETWEEN = re.compile(r"^---[^\n]*\n?", re.MULTILINE)
 _INTEGERS = frozenset(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))
 _PRIMITIVES = _INTEGERS | {"bool", "byte", "char", "float32", "float64", "string", "wstring"}
@@ -47,13 +51,25 @@ def message_definition(type_name: str) -> str:
 
 def service_definitions(type_name: str) -> tuple[str, str]:
     """The complete definitions of request and response of `pkg/srv/Type`. Raises MissingTypeError."""
+    request, response = definitions(type_name)
+    return request, response
+
+
+def definitions(type_name: str) -> list[str]:
+    """The complete definitions of a message, of request and response, or of goal, result and feedback.
+
+    Raises MissingTypeError.
+    """
+    parts = _PARTS[type_name.split("/")[1]]
+    if not parts:
+        return [message_definition(type_name)]
     text = _file_text(type_name)
     if text is not None:
-        request, response = _BETWEEN.split(text, maxsplit=1)
+        texts = _BETWEEN.split(text, maxsplit=len(parts) - 1)
     else:
-        service = load_type(type_name)
-        request, response = _class_text(service.Request), _class_text(service.Response)
-    return _complete(type_name, request), _complete(type_name, response)
+        interface = load_type(type_name)
+        texts = [_class_text(getattr(interface, part)) for part in parts]
+    return [_complete(type_name, part) for part in texts]
 
 
 def _complete(root: str, text: str) -> str:
@@ -67,7 +83,7 @@ def _complete(root: str, text: str) -> str:
         seen.add(name)
         part = _message_text(name)
         package, _, short = name.split("/")
-        parts += [_SEPARATOR, f"MSG: {package}/{short}", part]
+        parts += [SEPARATOR, f"MSG: {package}/{short}", part]
         waiting += _needed(name, part)
     return "\n".join(parts)
 
@@ -101,7 +117,15 @@ def _file_text(type_name: str) -> str | None:
             return (share / package / kind / f"{short}.{kind}").read_text(encoding="utf-8")
         except OSError:
             continue
-    return None
+    return _embedded_text(type_name) if is_served("rclpy") else None
+
+
+def _embedded_text(type_name: str) -> str | None:
+    """The definition that the embedded graph has."""
+    try:
+        return text_of(type_name)
+    except KeyError:
+        return None
 
 
 def _class_text(message: type[Message]) -> str:

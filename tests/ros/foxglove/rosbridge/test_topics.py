@@ -13,6 +13,7 @@ from sensor_msgs.msg import CompressedImage, LaserScan
 from std_msgs.msg import Float64, Int64, String, UInt8MultiArray
 
 from tests.bridge.ros_client import RosClient
+from tests.ros_graph import IS_EMBEDDED
 from thymio_sim_ros.ros.interface.qos import TRANSIENT_LOCAL
 
 
@@ -296,4 +297,5 @@ def test_an_oversized_message_is_answered_and_the_connection_goes_on(ros, bridge
     with RosClient(bridge(max_message_size=10_000).port, ros.until) as client:
         client.send("publish", topic="/a", msg={"data": "x" * 20_000})
         assert client.next("status")["msg"] == "frame: expected at most 10000 bytes (max_message_size), found 20053"
-        assert client.call("/rosapi/get_ros_version")["values"]["version"] == 2
+        version = client.call("/rosapi/get_ros_version")["values"]
+        assert (version["version"], version["is_embedded"]) == (2, IS_EMBEDDED)

@@ -17,6 +17,7 @@ from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
 from rclpy.node import NodeNameNonExistentError
 from rclpy.parameter import Parameter, parameter_value_to_python
 
+from thymio_sim_ros.portable_ros.import_hook import is_served
 from thymio_sim_ros.ros.foxglove.file_access import parameter_refusal
 from thymio_sim_ros.ros.foxglove.graph import visible_topics
 from thymio_sim_ros.ros.foxglove.rosbridge.host import Host
@@ -130,6 +131,11 @@ def _time(host: Host) -> Values:
     return {"time": {"sec": sec, "nanosec": nanosec}}
 
 
+def _ros_version() -> Values:
+    """As of rosapi, and whether the graph is the embedded one, which commands ask for."""
+    return {"version": 2, "distro": os.environ.get("ROS_DISTRO", "jazzy"), "is_embedded": is_served("rclpy")}
+
+
 def _endpoints(found: Any) -> list[str]:
     return sorted({_full(info.node_name, info.node_namespace) for info in found})
 
@@ -157,7 +163,7 @@ _ANSWERS: Mapping[str, Callable[[Host, Mapping[str, Any]], Values]] = {
     "/rosapi/service_request_details": lambda host, args: {"typedefs": type_details(_text(args, "type"), "Request")},
     "/rosapi/service_response_details": lambda host, args: {"typedefs": type_details(_text(args, "type"), "Response")},
     "/rosapi/get_time": lambda host, args: _time(host),
-    "/rosapi/get_ros_version": lambda host, args: {"version": 2, "distro": os.environ.get("ROS_DISTRO", "jazzy")},
+    "/rosapi/get_ros_version": lambda host, args: _ros_version(),
 }
 
 
