@@ -123,6 +123,9 @@ RULES = {
         ROS,
     ),
     f"{OURS}.course_packages.stubs": Rule(frozenset()),
+    f"{OURS}.course_packages.packages.sensor_msgs_py": Rule(
+        frozenset(), frozenset({"numpy", "sensor_msgs", "std_msgs"})
+    ),
     f"{OURS}.tf.buffer_core": Rule(_names("tf.errors"), never=NO_WALL_CLOCK),
     f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),
     # students copy them: rclpy, messages, and tf2 for those who have the wheels only
