@@ -96,14 +96,14 @@ def _declare_qos_parameters(
 
 def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> str | int | bool:
     """The value of the parameter that stands for a policy. Raises ValueError for an unknown policy."""
-    value = getattr(qos, policy.name.lower())
+    value: Duration | IntEnum | int | bool = getattr(qos, policy.name.lower())
     if isinstance(value, Duration):
         return value.nanoseconds
     if isinstance(value, IntEnum):
         if value.name == "UNKNOWN":
             raise ValueError("User provided QoS profile is invalid")
         return value.name.lower()
-    return value  # type: ignore[no-any-return]  # a depth or a switch
+    return value  # a depth or a switch
 
 
 def _policy(field: str, value: Any, like: Any) -> Any:

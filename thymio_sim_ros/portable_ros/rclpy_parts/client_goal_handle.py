@@ -20,10 +20,17 @@ class GoalSender(Protocol):
     def _get_result_async(self, goal_handle: Any) -> Future[Any]: ...
 
 
+class GoalResponse(Protocol):
+    """The response to a goal of any action."""
+
+    stamp: ros_types.TimeMessage
+    accepted: bool
+
+
 class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     """A goal that a server has answered."""
 
-    def __init__(self, action_client: GoalSender, goal_id: ros_types.UUID, goal_response: Any) -> None:
+    def __init__(self, action_client: GoalSender, goal_id: ros_types.UUID, goal_response: GoalResponse) -> None:
         self._client, self._goal_id, self._goal_response = action_client, goal_id, goal_response
         self._status = int(ros_types.GoalStatus.STATUS_UNKNOWN)
 
@@ -43,12 +50,12 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     @property
     def stamp(self) -> ros_types.TimeMessage:
         """When the goal was accepted."""
-        return self._goal_response.stamp  # type: ignore[no-any-return]  # the response of any action
+        return self._goal_response.stamp
 
     @property
     def accepted(self) -> bool:
         """Whether the goal was accepted."""
-        return self._goal_response.accepted  # type: ignore[no-any-return]  # the response of any action
+        return self._goal_response.accepted
 
     @property
     def status(self) -> int:

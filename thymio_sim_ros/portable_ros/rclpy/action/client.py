@@ -6,7 +6,7 @@ import threading
 import uuid
 import weakref
 from collections.abc import Callable
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar, cast
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.messages.action_class import Action, FeedbackT, GoalT, ResultT
@@ -21,14 +21,13 @@ from thymio_sim_ros.portable_ros.rclpy.qos import (
     qos_profile_services_default,
 )
 from thymio_sim_ros.portable_ros.rclpy.task import Future, await_or_execute
-from thymio_sim_ros.portable_ros.rclpy.waitable import NumberOfEntities
+from thymio_sim_ros.portable_ros.rclpy_parts.action_end import ActionEnd
 from thymio_sim_ros.portable_ros.rclpy_parts.action_parts import (
     CANCEL_GOAL,
     FEEDBACK,
     GET_RESULT,
     SEND_GOAL,
     STATUS,
-    ActionParts,
 )
 from thymio_sim_ros.portable_ros.rclpy_parts.client_goal_handle import ClientGoalHandle as ClientGoalHandle
 from thymio_sim_ros.portable_ros.rclpy_parts.goal_state import FINAL
@@ -57,7 +56,7 @@ class _ActionServiceClient(Client[Any, Any]):
         )
 
 
-class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
+class ActionClient(ActionEnd[GoalT, ResultT, FeedbackT]):
     """Sends goals to the server of an action."""
 
     def __init__(
@@ -74,16 +73,13 @@ class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
         status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
     ) -> None:
         """Raises ValueError for a wrong name and errors about the type."""
-        self._node, self._action_type = node, action_type
+        super().__init__(node, action_type, action_name, callback_group, "client")
         self._goal_handles: weakref.WeakValueDictionary[bytes, ClientGoalHandle[GoalT, ResultT, FeedbackT]]
         self._goal_handles = weakref.WeakValueDictionary()
         """The goals whose state is not final, as long as the program has them."""
         self._feedback_callbacks: dict[bytes, Callable[[Any], object]] = {}
-        group = callback_group or node.default_callback_group
         self._name = action_name
-        self._parts = parts = ActionParts(node, self, action_type, action_name, group, "client")
-        try:
-            impl: Any = action_type.Impl
+        with self._assembly() as (parts, impl):
             self._status = parts.subscription(impl.GoalStatusMessage, STATUS, self._note_states, status_sub_qos_profile)
             self._feedback = parts.subscription(
                 impl.FeedbackMessage, FEEDBACK, self._pass_feedback, feedback_sub_qos_profile
@@ -96,23 +92,6 @@ class ActionClient(Generic[GoalT, ResultT, FeedbackT]):
                     (impl.GetResultService, GET_RESULT, result_service_qos_profile),
                 )
             )
-        except Exception:
-            parts.destroy()
-            raise
-
-    @property
-    def action_type(self) -> type[Action[GoalT, ResultT, FeedbackT]]:
-        """The class of the action."""
-        return self._action_type
-
-    @property
-    def callback_group(self) -> CallbackGroup:
-        """The group of all callbacks."""
-        return self._parts.group
-
-    def get_num_entities(self) -> NumberOfEntities:
-        """The numbers of entities that the client is made of."""
-        return self._parts.count()
 
     def send_goal(self, goal: GoalT, **kwargs: Any) -> Any:
         """Send a goal and wait for the response with its result; another thread must spin the node.
@@ -219,8 +198,7 @@ def _wait_for(future: Future[T], client: Client[Any, Any]) -> T:
     future.add_done_callback(lambda _: done.set())
     with client.named_wait():
         done.wait()
-    result: Any = future.result()
-    return result  # type: ignore[no-any-return]  # there is a result
+    return cast("T", future.result())
 
 
 def _require_handle(goal_handle: object) -> None:

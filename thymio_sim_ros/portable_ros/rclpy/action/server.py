@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import threading
 import traceback
-from typing import Any, Generic
+from typing import Any
 
 from thymio_sim_ros.portable_ros import ros_types
 from thymio_sim_ros.portable_ros.messages.action_class import Action, FeedbackT, GoalT, ResultT
@@ -18,14 +18,13 @@ from thymio_sim_ros.portable_ros.rclpy.qos import (
     qos_profile_services_default,
 )
 from thymio_sim_ros.portable_ros.rclpy.task import Future, await_or_execute
-from thymio_sim_ros.portable_ros.rclpy.waitable import NumberOfEntities
+from thymio_sim_ros.portable_ros.rclpy_parts.action_end import ActionEnd
 from thymio_sim_ros.portable_ros.rclpy_parts.action_parts import (
     CANCEL_GOAL,
     FEEDBACK,
     GET_RESULT,
     SEND_GOAL,
     STATUS,
-    ActionParts,
     Respond,
 )
 from thymio_sim_ros.portable_ros.rclpy_parts.goal_callbacks import (
@@ -47,7 +46,7 @@ from thymio_sim_ros.portable_ros.rclpy_parts.server_goal_handle import ExecuteCa
 from thymio_sim_ros.portable_ros.rclpy_parts.server_goal_handle import ServerGoalHandle as ServerGoalHandle
 
 
-class ActionServer(Generic[GoalT, ResultT, FeedbackT]):
+class ActionServer(ActionEnd[GoalT, ResultT, FeedbackT]):
     """Accepts, executes and cancels goals by callbacks, which may be coroutines, and keeps their results for a time."""
 
     def __init__(
@@ -77,39 +76,19 @@ class ActionServer(Generic[GoalT, ResultT, FeedbackT]):
         self.register_goal_callback(goal_callback)
         self.register_cancel_callback(cancel_callback)
         self.register_execute_callback(execute_callback)
-        self._node, self._action_type = node, action_type
+        super().__init__(node, action_type, action_name, callback_group, "server")
         self._logger = node.get_logger().get_child("action_server")
         self.lock = threading.RLock()
         """Guards the goals and their states, and orders what is published of them."""
         self._goal_handles: dict[bytes, ServerGoalHandle[GoalT, ResultT, FeedbackT]] = {}
         self._result_futures: dict[bytes, Future[Any]] = {}
-        group = callback_group or node.default_callback_group
-        self._parts = parts = ActionParts(node, self, action_type, action_name, group, "server")
-        try:
-            impl: Any = action_type.Impl
+        with self._assembly() as (parts, impl):
             self._expiry = ResultExpiry(parts.timer, node.get_clock(), result_timeout, self._forget, self.lock)
             self._feedback = parts.publisher(impl.FeedbackMessage, FEEDBACK, feedback_pub_qos_profile)
             self._status = parts.publisher(impl.GoalStatusMessage, STATUS, status_pub_qos_profile)
             parts.service(impl.SendGoalService, SEND_GOAL, self._on_goal, goal_service_qos_profile)
             parts.service(impl.CancelGoalService, CANCEL_GOAL, self._on_cancel, cancel_service_qos_profile)
             parts.service(impl.GetResultService, GET_RESULT, self._on_result_request, result_service_qos_profile)
-        except Exception:
-            parts.destroy()
-            raise
-
-    @property
-    def action_type(self) -> type[Action[GoalT, ResultT, FeedbackT]]:
-        """The class of the action."""
-        return self._action_type
-
-    @property
-    def callback_group(self) -> CallbackGroup:
-        """The group of all callbacks but those that execute goals, which have none."""
-        return self._parts.group
-
-    def get_num_entities(self) -> NumberOfEntities:
-        """The numbers of entities that the server is made of."""
-        return self._parts.count()
 
     def register_goal_callback(self, goal_callback: GoalCallback[GoalT] | None) -> None:
         """Set what decides about new goals; None accepts all."""
