@@ -145,6 +145,7 @@ RULES = {
     f"{OURS}.grading": Rule(
         _names("aseba_vm", "batch_runs", "files.block_files", "files.test_files", "grading"), frozenset({"pytest"})
     ),
+    f"{OURS}.grading.sandbox.tracked_processes": Rule(_names("grading"), frozenset({"psutil"})),
     f"{OURS}.grading.gradescope": Rule(frozenset(), frozenset({"yaml"})),
     f"{OURS}.grading.test_process": Rule(
         _names("files.test_files", "grading", "portable_ros.import_hook", "pytest_plugin", "testing"),

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from thymio_sim_ros.cli import grade
 from thymio_sim_ros.grading.assignment import Limits, load
 from thymio_sim_ros.grading.errors import GradingError
 
@@ -88,3 +89,10 @@ def test_without_hidden_tests_there_is_one_part_with_all_files(tmp_path: Path) -
     (tmp_path / "a.toml").write_text('tests = ["test_a.py"]\ndata = ["one.json"]')
     (only,) = load(tmp_path / "a.toml").parts()
     assert set(only.content) == {"test_a.py", "one.json"}
+
+
+def test_programs_of_their_own_cannot_be_graded_on_windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "test_it.py").write_text("def test_it(ros):\n    ros.run('node.py')\n")
+    monkeypatch.setattr(grade.sys, "platform", "win32")
+    with pytest.raises(GradingError, match=r"test_it\.py: found ros\.run on Windows, expected ros\.start"):
+        grade.check_system(load(tmp_path / "test_it.py"))

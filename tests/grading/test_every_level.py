@@ -72,6 +72,9 @@ CASES = {
 }
 """What a submission does in one test after the other, the verdict, and the first line of its message."""
 
+ELSEWHERE = {"os.memfd_create('a')": PASSED}
+"""What differs at the level for other systems than Linux."""
+
 TESTS = """
 import runpy
 from pathlib import Path
@@ -102,12 +105,13 @@ def verdicts(level: str, actions: Collection[str]) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_verdicts_and_reasons_are_the_same_at_every_level(level: str) -> None:
-    assert dict(zip(CASES, verdicts(level, CASES), strict=True)) == CASES
+    expected = CASES | (ELSEWHERE if level == "process" else {})
+    assert dict(zip(CASES, verdicts(level, CASES), strict=True)) == expected
 
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_a_submission_that_removes_all_that_it_can_does_the_next_test_no_harm(level: str) -> None:
-    if level == "limits" and os.geteuid():
+    if level == "process" or (level == "limits" and os.geteuid()):
         pytest.skip("at this level, a submission has the rights of the user")
     remove = "[shutil.rmtree(os.path.join('..', name), True) for name in os.listdir('..')]"
     assert verdicts(level, [remove, "pass"]) == [PASSED, PASSED]

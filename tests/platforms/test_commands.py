@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import shutil
 import socket
@@ -10,6 +11,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 
 from tests.classroom.class_support import RunningClass
@@ -28,10 +30,56 @@ def test_it_drives(thymio):
     thymio.run(1)
     assert thymio.speed > 0.02
 """
-NO_SANDBOX = (
-    "thymio-sim: grading needs the sandboxes of Linux",
-    "thymio-sim: this machine isolates no submissions (namespaces: ",
-)
+ASSIGNMENT = """
+tests = ["test_node.py"]
+files = ["node.py"]
+
+[limits]
+cpu_s = 10
+"""
+NODE_TEST = """
+import pytest
+
+@pytest.mark.thymio(playground="base")
+def test_the_node_drives(ros, simulation):
+    sim = simulation()
+    ros.start("node.py", name="driver")
+    sim.until(lambda: sim.thymio.pose.x_m > 0.05, seconds=2)
+
+def test_another_one():
+    pass
+"""
+NODE = """
+import os, subprocess, sys, time
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("node")
+        self.wheels = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(0.1, self.drive)
+        self.speed = 0.1
+
+    def drive(self):
+        {before}
+        command = Twist()
+        command.linear.x = self.speed
+        self.wheels.publish(command)
+
+rclpy.init()
+rclpy.spin(Driver())
+"""
+LEFT = "program that is left"
+SLEEPER = f"subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(10000)', '{LEFT}'])"
+HANDED_IN = {
+    "Good": ("self.speed = 0.0 if 'THYMIO_TEST_SECRET' in os.environ else 0.1", "1", "2"),
+    "Forever": ("while True: pass", "0", "1"),
+    "Ends": ("os._exit(0)", "0", "1"),
+    "Leaves a program": (f"self.program = getattr(self, 'program', None) or {SLEEPER}", "1", "2"),
+}
+"""What a node does first in its callback, the points of the first test, and of both."""
 TEXT = "onevent prox\nmotor.left.target = 100 + prox.horizontal[2] / 100\nmotor.right.target = 100\n"
 
 
@@ -97,13 +145,20 @@ def test_the_tests_of_an_assignment_run_with_pytest(handed_in: Path) -> None:
     assert done.returncode == 0, done.stdout.decode(errors="replace")
 
 
-def test_grading_a_class_works_or_one_line_says_why_not(handed_in: Path) -> None:
-    done = run(PYTHON, "grade", "class", "--assignment", "test_it.py", folder=handed_in)
-    if done.returncode:
-        (line,) = done.stderr.splitlines()
-        assert line.startswith(NO_SANDBOX)
-    else:
-        assert "Zoë" in (handed_in / "grades" / "marks.csv").read_text(encoding="utf-8")
+def test_a_class_of_nodes_is_graded_without_a_sandbox(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "assignment.toml").write_text(ASSIGNMENT, encoding="utf-8")
+    (tmp_path / "test_node.py").write_text(NODE_TEST, encoding="utf-8")
+    for name, (before, _, _) in HANDED_IN.items():
+        (tmp_path / "class" / name).mkdir(parents=True)
+        (tmp_path / "class" / name / "node.py").write_text(NODE.format(before=before), encoding="utf-8")
+    monkeypatch.setenv("THYMIO_TEST_SECRET", "42")
+    done = run(PYTHON, "grade", "class", "--assignment", "assignment.toml", "--isolation", "process", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "no isolation: " in done.stderr
+    with (tmp_path / "grades" / "marks.csv").open(newline="", encoding="utf-8") as file:
+        rows = {row["name"]: (row["test_the_node_drives"], row["points"]) for row in csv.DictReader(file)}
+    assert rows == {name: (first, both) for name, (_, first, both) in HANDED_IN.items()}
+    until(lambda: not any(LEFT in (one.info["cmdline"] or ()) for one in psutil.process_iter(["cmdline"])))
 
 
 def _listens(port: int) -> bool:

@@ -21,7 +21,7 @@ from distributed import Client, Future, KilledWorker, LocalCluster, Worker, Work
 
 from thymio_sim_ros import __version__
 from thymio_sim_ros.batch_runs.errors import EngineError
-from thymio_sim_ros.batch_runs.failure import Failure
+from thymio_sim_ros.batch_runs.failure import Failure, attempt, line_of
 from thymio_sim_ros.batch_runs.group_size import GROUP_S, GroupSize
 
 __all__ = ["run_all"]
@@ -80,7 +80,7 @@ def run_all(
         try:
             yield from _Dispatch(client, function, tasks, GroupSize(group_s)).outcomes()
         except OSError as error:  # of a connection; those of tasks are failures
-            raise EngineError(f"the cluster was lost: {_line(error)}") from error
+            raise EngineError(f"the cluster was lost: {line_of(error)}") from error
 
 
 @contextlib.contextmanager
@@ -140,7 +140,7 @@ def _connected(scheduler: str) -> Iterator[Client]:
         client = Client(scheduler, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError) as error:
         raise EngineError(
-            f"scheduler {scheduler}: {_line(error)}; expected the address of a running `dask scheduler`"
+            f"scheduler {scheduler}: {line_of(error)}; expected the address of a running `dask scheduler`"
         ) from error
     with client:
         try:
@@ -215,7 +215,7 @@ class _Dispatch(Generic[Task, Result]):
         if isinstance(found, KilledWorker):
             return self._suspect(numbers)
         if isinstance(found, BaseException):  # whatever the cluster says instead of running our code
-            raise EngineError(f"the cluster does not run the tasks: {_line(found)}") from found
+            raise EngineError(f"the cluster does not run the tasks: {line_of(found)}") from found
         seconds, results = found
         self._size.add(len(numbers), seconds)
         return list(zip(numbers, results, strict=True))
@@ -239,16 +239,5 @@ def _run_group(
         raise EngineError(f"a worker has version {__version__} of thymio_sim_ros, expected {version}, as here")
     with _one_at_a_time:
         started_s = time.monotonic()
-        results = [_run_one(function, task) for task in tasks]
+        results = [attempt(function, task) for task in tasks]
         return time.monotonic() - started_s, results
-
-
-def _run_one(function: Callable[[Task], Result], task: Task) -> Result | Failure:
-    try:
-        return function(task)
-    except Exception as error:
-        return Failure(f"{type(error).__name__}: {_line(error)}")
-
-
-def _line(error: BaseException) -> str:
-    return " ".join(str(error).split()) or type(error).__name__

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import time
 from collections.abc import Sequence
@@ -31,16 +32,15 @@ from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.sandbox.levels import LEVELS, best_level, why_unavailable
 from thymio_sim_ros.grading.submissions import Submission
 
-__all__ = ["run"]
+__all__ = ["check_system", "run"]
 
 FAILED = 1
 WRITE_S = 5.0
 """Time between two tables while submissions are graded."""
 
-_NO_SANDBOX = (
-    "grading needs the sandboxes of Linux (on Windows: WSL 2); here, pytest runs the tests on one submission, in the "
-    "folder with both"
-)
+_OPEN = ("limits", "process")
+"""Levels that do not protect files."""
+_RUNS_PROGRAM = re.compile(rb"\bros\.run\(")
 
 EXAMPLE = """\
 SUBMISSIONS is a folder or zip with a folder, file or zip for each pupil, also as exported by Moodle or Canvas.
@@ -59,8 +59,6 @@ example:
 def run(argv: Sequence[str]) -> int:
     """Grade a class; return the exit code. Raises UsageError for input that cannot be used."""
     options = _parser().parse_args(argv)
-    if not sys.platform.startswith("linux"):
-        raise UsageError(_NO_SANDBOX)
     check_dask("grade")
     if options.ros:
         check_ros()
@@ -68,6 +66,7 @@ def run(argv: Sequence[str]) -> int:
         assignment = replace(assignments.load(options.assignment), has_installed_ros=options.ros)
         handed_in = submissions.find(options.submissions)
         prepared = [submissions.prepared(submission, assignment.expected) for submission in handed_in]
+        check_system(assignment)
         level = _level(options.isolation)
         tests = grader.collect(assignment, level)
         _print(f"isolation: {level} ({LEVELS[level]})")
@@ -198,15 +197,25 @@ def _check_solution(assignment: Assignment, path: Path, tests: Sequence[GradedTe
     _print(f"solution: {points} points")
 
 
+def check_system(assignment: Assignment) -> None:
+    """Raise GradingError if the tests need what this system lacks."""
+    if sys.platform == "win32":
+        for test in assignment.tests:
+            if _RUNS_PROGRAM.search(assignment.content[test]):
+                raise GradingError(f"{test}: found ros.run on Windows, expected ros.start: or grade in WSL 2")
+
+
 def _level(wanted: str) -> str:
-    if wanted == "auto":
-        return best_level()
-    reason = why_unavailable(wanted)
-    if reason:
+    level = best_level() if wanted == "auto" else wanted
+    if wanted != "auto" and (reason := why_unavailable(wanted)):
         raise GradingError(f"--isolation {wanted}: not available here: {reason}")
-    if wanted == "limits":
-        print(f"thymio-sim grade: no isolation: {LEVELS[wanted]}", file=sys.stderr)
-    return wanted
+    if level in _OPEN:
+        print(
+            f"thymio-sim grade: no isolation: {LEVELS[level]}. Grade only programs that you would start yourself; "
+            "Linux isolates them (on Windows: WSL 2)",
+            file=sys.stderr,
+        )
+    return level
 
 
 def _line(graded: Graded) -> str:
@@ -238,7 +247,7 @@ def _parser() -> argparse.ArgumentParser:
         "--isolation",
         choices=["auto", *LEVELS],
         default="auto",
-        help=f"auto: the strongest that this machine gives, but never `limits`. {levels}",
+        help=f"auto: the strongest that this machine gives; on Linux neither `limits` nor `process`. {levels}",
     )
     parser.add_argument(
         "--ros", action="store_true", help="test ROS nodes on an installed ROS 2 (default: on the embedded graph)"

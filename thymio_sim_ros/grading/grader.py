@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import cache, partial
 
 from thymio_sim_ros.batch_runs.failure import Failure
+from thymio_sim_ros.batch_runs.threads import run_in_threads
 from thymio_sim_ros.grading.assignment import Assignment, Limits
 from thymio_sim_ros.grading.common_failure import did_not_begin
 from thymio_sim_ros.grading.errors import DestroyedError, GradingError
@@ -62,10 +63,14 @@ def run_submissions(
     no verdict: the machine could not grade. `workers`, `scheduler`, `dashboard`: see `batch_runs.engine.run_all`.
     Raises EngineError.
     """
-    from thymio_sim_ros.batch_runs.engine import run_all
-
     names = tuple(test.name for test in tests)
     function = partial(run_submission, assignment=assignment, tests=names, level=level)
+    if level == "process" and not scheduler:  # Dask's processes would only wait for those of the submissions
+        with closing(run_in_threads(function, submissions, workers)) as outcomes:
+            yield from outcomes
+        return
+    from thymio_sim_ros.batch_runs.engine import run_all
+
     cluster = {"workers": workers, "scheduler": scheduler, "dashboard": dashboard}
     with closing(run_all(function, submissions, group_s=0.0, **cluster)) as outcomes:  # type: ignore[arg-type]
         yield from outcomes

@@ -62,7 +62,7 @@ class TestFunctions:
 
 def _is_of_tests(module: ModuleType, folder: Path) -> bool:
     name = getattr(module, "__name__", "")
-    return name.partition(".")[0] in _PACKAGES or str(getattr(module, "__file__", "")).startswith(f"{folder}/")
+    return name.partition(".")[0] in _PACKAGES or Path(getattr(module, "__file__", None) or "/").is_relative_to(folder)
 
 
 def _owners(module: ModuleType) -> Iterator[tuple[str, Any]]:

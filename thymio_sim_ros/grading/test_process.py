@@ -2,7 +2,7 @@
 
 Usage: python -m thymio_sim_ros.grading.test_process <folder for logs> <test file>… <report> <control>
 
-`report` and `control` are file descriptors; `sandbox/report_protocol.py` describes their content.
+`report` and `control` are inherited files (`sandbox/pipes.py`); `sandbox/report_protocol.py` describes their content.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import pytest
 from thymio_sim_ros.files.test_files import trace_path
 from thymio_sim_ros.grading.integrity import TestFunctions
 from thymio_sim_ros.grading.points import points_of
-from thymio_sim_ros.grading.sandbox import syscalls
+from thymio_sim_ros.grading.sandbox.pipes import opened
 from thymio_sim_ros.portable_ros import import_hook
 from thymio_sim_ros.pytest_plugin import GRADED, Graded
 
@@ -43,15 +43,16 @@ _ENDS: Mapping[type[BaseException], str] = {
 
 def main(argv: Sequence[str]) -> None:
     """Run the tests; ends the process."""
-    syscalls.hide_memory()  # from programs that the tests start
+    if sys.platform == "linux":
+        from thymio_sim_ros.grading.sandbox import syscalls
+
+        syscalls.hide_memory()  # from programs that the tests start
     folder, *tests, report, control = argv
-    commands = open(int(control), encoding="utf-8")  # noqa: SIM115  # open to the end
-    for file in (int(report), int(control)):
-        os.set_inheritable(file, False)
+    commands = open(opened(control), encoding="utf-8")  # noqa: SIM115  # open to the end
     task = json.loads(commands.readline())
     graded = Graded(Path(task["assignment"]), frozenset(task["handed_in"]), task["output_bytes"])
     plugin = GradingPlugin(
-        Path(folder), _Reporter(int(report), task["secret"]).send, commands.readline, task["selected"], graded
+        Path(folder), _Reporter(opened(report), task["secret"]).send, commands.readline, task["selected"], graded
     )
     if not task["has_installed_ros"]:
         import_hook.install(is_forced=True)
@@ -69,7 +70,8 @@ class _Reporter:
     def __init__(self, file: int, secret: str) -> None:
         self._file: int | None = file
         self._secret = secret
-        os.register_at_fork(after_in_child=self._close)
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._close)
 
     def send(self, kind: str, **content: object) -> None:
         """Write a line. In a forked process this ends the process, which would otherwise repeat the tests."""
@@ -216,7 +218,7 @@ def _not_ended(folder: str) -> Generator[None, object, object]:
         return (yield)
     except tuple(_ENDS) as error:
         stack = traceback.extract_tb(error.__traceback__)
-        frames = [frame for frame in stack if frame.filename.startswith(f"{folder}/")]
+        frames = [frame for frame in stack if Path(frame.filename).is_relative_to(folder)]
         where = f"{frames[-1].filename}, line {frames[-1].lineno}: " if frames else ""
         what = next(text for kind, text in _ENDS.items() if isinstance(error, kind))
         text = f"{where}{what} ends the program before the test is over: remove it"

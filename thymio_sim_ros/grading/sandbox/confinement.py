@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import os
-import resource
 from dataclasses import dataclass
 
 from thymio_sim_ros.grading.assignment import Limits
 from thymio_sim_ros.grading.sandbox import landlock, seccomp, syscalls
+from thymio_sim_ros.grading.sandbox.resource_limits import limit_resources
 
 __all__ = ["Confinement", "confine"]
-
-_OPEN_FILES = 512
-_NICENESS = 5
-"""So that the supervisor gets its turn beside a fork bomb."""
-_MARGIN_S = 30
-"""Processor time after which the kernel ends a process, should its supervisor not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,15 +31,7 @@ class Confinement:
 
 def confine(confinement: Confinement) -> None:
     """Confine this process, between fork and exec; it cannot be undone."""
-    limits = confinement.limits
-    os.setsid()
-    os.nice(_NICENESS)
-    _limit(resource.RLIMIT_CORE, 0)
-    _limit(resource.RLIMIT_CPU, int(limits.total_cpu_s) + _MARGIN_S)
-    _limit(resource.RLIMIT_DATA, int(limits.memory_mb * 1e6))  # unlike AS, it leaves out what wasmtime only reserves
-    _limit(resource.RLIMIT_FSIZE, int(limits.disk_mb * 1e6))
-    _limit(resource.RLIMIT_NOFILE, _OPEN_FILES)
-    _limit(resource.RLIMIT_NPROC, limits.processes + confinement.other_processes)
+    limit_resources(confinement.limits, confinement.other_processes)
     if confinement.user is not None:
         os.setgroups([])
         os.setresgid(confinement.user, confinement.user, confinement.user)
@@ -56,10 +42,3 @@ def confine(confinement: Confinement) -> None:
     if confinement.writable is not None:
         landlock.restrict(confinement.readable, confinement.listable, confinement.writable)
     seccomp.restrict()
-
-
-def _limit(kind: int, value: int) -> None:
-    hard = resource.getrlimit(kind)[1]
-    if hard != resource.RLIM_INFINITY:
-        value = min(value, hard)
-    resource.setrlimit(kind, (value, value))

@@ -1,80 +1,35 @@
 """The process of a sandbox: reads a job from standard input, runs it in isolation, prints the report as JSON.
 
-Usage: python -m thymio_sim_ros.grading.sandbox.launcher <level> <bytes of files>
+Usage: python -m thymio_sim_ros.grading.sandbox.launcher
 """
 
 from __future__ import annotations
 
-import os
 import pickle
+import signal
 import sys
 import tempfile
-from functools import partial
 from pathlib import Path
 
-from thymio_sim_ros.grading.sandbox import namespaces, syscalls
-from thymio_sim_ros.grading.sandbox.confinement import Confinement
 from thymio_sim_ros.grading.sandbox.job import Job
-from thymio_sim_ros.grading.sandbox.readable import PACKAGE_FOLDER, UNPRIVILEGED_ID, readable_paths
-from thymio_sim_ros.grading.sandbox.supervisor import Place, supervise
+from thymio_sim_ros.grading.sandbox.portable_place import PortablePlace
+from thymio_sim_ros.grading.sandbox.supervisor import supervise
 
 __all__ = ["main"]
-
-_FIRST_USER = 1_800_000_000
 
 
 def main() -> int:
     """Run the job of standard input; return the exit code."""
-    syscalls.die_with_parent()
     job: Job = pickle.load(sys.stdin.buffer)  # of the grader
-    user = _unprivileged_user()
-    if job.level == "namespaces":
-        return namespaces.run_inside(int(job.limits.disk_mb * 1e6), partial(_run_in_namespaces, job, user))
+    if job.level != "process":
+        from thymio_sim_ros.grading.sandbox import linux_launcher
+
+        return linux_launcher.run(job)
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(1))  # ends the processes of the submission, too
     with tempfile.TemporaryDirectory(prefix="thymio-grade-", ignore_cleanup_errors=True) as folder:
-        if user is not None:
-            os.chown(folder, -1, user)
-            os.chmod(folder, 0o750)  # its folders cannot be removed or renamed
-        has_landlock = job.level == "landlock"
-        confinement = Confinement(
-            user,
-            job.limits,
-            0 if user is not None else _threads_of_user(),
-            tuple(f"{folder}/{name}" for name in ("work", "tmp", "out")) if has_landlock else None,
-            (*readable_paths(), f"{folder}/assignment") if has_landlock else (),
-            (str(PACKAGE_FOLDER), folder) if has_landlock else (),
-        )
-        _print(job, Place(Path(folder), confinement, has_own_processes=False, has_own_disk=False))
+        report = supervise(job, PortablePlace(Path(folder).resolve(), job.limits))
+        print(report.to_json(), flush=True)
     return 0
-
-
-def _run_in_namespaces(job: Job, user: int | None) -> None:
-    place = Place(Path(namespaces.FOLDER), Confinement(user, job.limits), has_own_processes=True, has_own_disk=True)
-    _print(job, place)
-
-
-def _print(job: Job, place: Place) -> None:
-    print(supervise(job, place).to_json(), flush=True)
-
-
-def _unprivileged_user() -> int | None:
-    """A user of its own for a job that root starts; None for any other user, who cannot become another."""
-    if os.geteuid() != 0:
-        return None
-    wanted = _FIRST_USER + os.getpid()
-    ranges = [tuple(map(int, line.split())) for line in Path("/proc/self/uid_map").read_text("ascii").splitlines()]
-    return wanted if any(first <= wanted < first + count for first, _, count in ranges) else UNPRIVILEGED_ID
-
-
-def _threads_of_user() -> int:
-    """Number of processes and threads of this user, which the kernel counts with those of the sandbox."""
-    count = 0
-    for name in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            if os.stat(f"/proc/{name}").st_uid == os.geteuid():
-                count += len(os.listdir(f"/proc/{name}/task"))
-        except OSError:
-            continue
-    return count
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 from thymio_sim_ros.grading.assignment import Limits
 from thymio_sim_ros.grading.errors import DestroyedError, GradingError
@@ -20,10 +21,13 @@ LEVELS: Mapping[str, str] = {
     "namespaces": "own file system, processes and network, by Linux namespaces",
     "landlock": "files of others are closed and TCP is refused, by Landlock; UDP and the list of processes are open",
     "limits": "limits of CPU time, memory, processes and output only; files of your user and the network are OPEN",
+    "process": "limits of CPU time, memory and output for a process; your files, programs and the network are OPEN",
 }
 """Levels, strongest first, and what they give."""
 
-AUTOMATIC = ("namespaces", "landlock")
+_IS_LINUX = sys.platform.startswith("linux")
+
+AUTOMATIC = ("namespaces", "landlock") if _IS_LINUX else ("process",)
 """Levels that are chosen without being asked for."""
 
 _LAUNCHER = "thymio_sim_ros.grading.sandbox.launcher"
@@ -45,9 +49,13 @@ def best_level() -> str:
 
 def why_unavailable(level: str) -> str:
     """Why a level is not available here; empty if it is. It is tried, not guessed."""
-    if not sys.platform.startswith("linux"):
+    if level != "process" and not _IS_LINUX:
         return "found no Linux; on Windows use WSL 2"
-    if level != "namespaces" and os.geteuid() == 0 and (reason := _why_closed(needed_paths(), user=UNPRIVILEGED_ID)):
+    if (
+        level in ("landlock", "limits")
+        and os.geteuid() == 0
+        and (reason := _why_closed(needed_paths(), user=UNPRIVILEGED_ID))
+    ):
         return reason
     probe = b"def test_nothing(): pass\n"
     job = Job(level, ("test_probe.py",), {"test_probe.py": probe}, {}, None, Limits())
@@ -79,7 +87,7 @@ def run_job(job: Job) -> Report:
     Raises DestroyedError if the sandbox was ended, GradingError if it cannot be entered or fails by itself.
     """
     limit = job.limits.wall_s + _GRACE_S
-    environment = {**os.environ, "PYTHONPATH": python_path()}
+    environment = {**os.environ, "PYTHONPATH": python_path(), "PYTHONUTF8": "1"}
     with subprocess.Popen(
         [sys.executable, "-P", "-m", _LAUNCHER],
         stdin=subprocess.PIPE,
@@ -88,14 +96,28 @@ def run_job(job: Job) -> Report:
         env=environment,
     ) as process:
         try:
+            if sys.platform == "win32":
+                _launchers().started(process)
             output, errors = process.communicate(pickle.dumps(job), timeout=limit)
         except subprocess.TimeoutExpired:
             raise DestroyedError(f"the sandbox did not end within {limit:g} s") from None
         finally:
-            process.kill()  # with it, the kernel ends its namespaces
+            if job.level == "process":
+                process.terminate()  # it ends its processes
+            else:
+                process.kill()  # with it, the kernel ends its namespaces
     try:
         return Report.from_json(output.decode())
     except ValueError:
         last_line = errors.decode("utf-8", "replace").strip().rpartition("\n")[2]
         kind = DestroyedError if process.returncode < 0 else GradingError
         raise kind(f"the sandbox ended with code {process.returncode}: {last_line or 'no message'}") from None
+
+
+if sys.platform == "win32":
+    from thymio_sim_ros.grading.sandbox.job_object import JobObject
+
+    @cache
+    def _launchers() -> JobObject:
+        """The job of all sandboxes, which end with this process."""
+        return JobObject()

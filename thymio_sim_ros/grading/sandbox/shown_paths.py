@@ -16,11 +16,11 @@ __all__ = ["without_folders"]
 
 def without_folders(report: Report, folder: Path) -> Report:
     """Return a report whose paths begin in the folder of the tests, in a package, or in Python's library."""
-    folders = sorted({str(one) for one in _folders(folder)} - {"/", ""}, key=len, reverse=True)
+    folders = sorted({str(one) for one in _folders(folder)} - {os.sep, ""}, key=len, reverse=True)
 
     def short(text: str) -> str:
         for one in folders:
-            text = text.replace(f"{one}/", "")
+            text = text.replace(f"{one}{os.sep}", "")
         return text
 
     outcomes = {

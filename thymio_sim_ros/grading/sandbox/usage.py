@@ -7,9 +7,10 @@ import resource
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from thymio_sim_ros.grading.sandbox.processes import Usage
 from thymio_sim_ros.grading.sandbox.thread_states import is_working
 
-__all__ = ["Usage", "descendants", "memory_used", "used"]
+__all__ = ["descendants", "memory_used", "used"]
 
 _TICK_S = 1 / os.sysconf("SC_CLK_TCK")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -21,14 +22,6 @@ class _Process:
     parent: int
     cpu_s: float
     rss: int
-
-
-@dataclass(frozen=True, slots=True)
-class Usage:
-    """Processor time in s of all descendants, also of those that have ended; whether any works now."""
-
-    cpu_s: float
-    is_working: bool
 
 
 def used() -> Usage:

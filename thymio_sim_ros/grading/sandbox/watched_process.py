@@ -4,24 +4,24 @@ from __future__ import annotations
 
 import contextlib
 import os
-import selectors
 import signal
 import subprocess
+import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.grading.assignment import MAX_FILES, Limits
 from thymio_sim_ros.grading.limit_reasons import reason
-from thymio_sim_ros.grading.sandbox.usage import descendants, memory_used, used
+from thymio_sim_ros.grading.sandbox.pipes import PipeReader, inherited, word
+from thymio_sim_ros.grading.sandbox.processes import Processes
 
 __all__ = ["Ended", "LimitError", "WatchedProcess"]
 
 POLL_S = 0.1
 _MEMORY_POLLS = 5
 """Polls between two measurements of the memory; one process alone is limited by the kernel."""
-_CHUNK = 65536
 _LINE_BYTES = 1_000_000
 _KEPT = 20_000
 """Bytes of output that are kept of its begin, and of its end."""
@@ -54,7 +54,7 @@ class WatchedProcess:
         *,
         folder: Path,
         environment: dict[str, str],
-        confine: Callable[[], None],
+        processes: Processes,
         limits: Limits,
         disk_folder: Path | None,
         ends_at: float,
@@ -64,48 +64,44 @@ class WatchedProcess:
         """
         report, report_child = os.pipe()
         control_child, self._control = os.pipe()
-        self._report = report
+        self._report, self._processes = report, processes
         try:
             self._process = subprocess.Popen(
-                [*command, str(report_child), str(control_child)],
+                [*command, word(report_child), word(control_child)],
                 cwd=folder,
                 env=environment,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
-                pass_fds=(report_child, control_child),
-                preexec_fn=confine,
+                **inherited((report_child, control_child)),
+                **processes.options(),
             )
+            processes.started(self._process)
         finally:
             os.close(report_child)
             os.close(control_child)
         assert self._process.stdout is not None
         self._output = self._process.stdout.fileno()
         self._limits, self._disk_folder, self._ends_at = limits, disk_folder, ends_at
-        self._selector = selectors.DefaultSelector()
-        for file in (self._report, self._output):
-            os.set_blocking(file, False)
-            self._selector.register(file, selectors.EVENT_READ)
+        self._pipes = PipeReader(self._report, self._output)
         self._lines = b""
         self._head, self._tail, self._size = b"", b"", 0
         self._polls = 0
-        self._test_began_s = used().cpu_s
+        self._test_began_s = processes.used().cpu_s
         self._idle_from = (time.monotonic(), 0.0)
 
     def send(self, line: str) -> None:
         """Send a line to the process."""
-        with contextlib.suppress(BrokenPipeError):  # it has ended, as `lines` will find
+        with contextlib.suppress(OSError):  # it has ended, as `lines` will find
             os.write(self._control, line.encode() + b"\n")
 
     def lines(self) -> Iterator[bytes]:
         """Yield the lines of its report. Raises Ended or LimitError."""
         next_check = time.monotonic() + POLL_S
         while True:
-            ready = {key.fd for key, _ in self._selector.select(max(0.0, next_check - time.monotonic()))}
-            if self._output in ready:
-                self._read_output()
-            if self._report in ready:
-                yield from self._read_report()
+            self._pipes.wait(max(0.0, next_check - time.monotonic()))
+            self._read_output()
+            yield from self._read_report()
             if time.monotonic() >= next_check:
                 self._check_limits()
                 if self._process.poll() is not None:
@@ -117,7 +113,7 @@ class WatchedProcess:
     def take_output(self) -> tuple[str, float]:
         """Return the output and processor time in s since the last call: of one test."""
         self._read_output()
-        total_s = used().cpu_s
+        total_s = self._processes.used().cpu_s
         cpu_s = total_s - self._test_began_s
         skipped = self._size - len(self._head) - len(self._tail)
         between = f"\n… {skipped} bytes are left out …\n".encode() if skipped else b""
@@ -131,20 +127,17 @@ class WatchedProcess:
         """The last line of the output that `take_output` has not returned yet."""
         return (self._head + self._tail).decode("utf-8", "replace").strip().rpartition("\n")[2]
 
-    def close(self, kill_all: Callable[[], None]) -> None:
+    def close(self) -> None:
         """End it with all its descendants."""
-        while descendants():
-            kill_all()
-            self._process.poll()
-            _reap()
-        self._selector.close()
+        self._processes.end(self._process)
+        self._pipes.close()
         for file in (self._report, self._control):
             os.close(file)
         assert self._process.stdout is not None
         self._process.stdout.close()
 
     def _read_report(self) -> Iterator[bytes]:
-        while chunk := _read(self._report, self._selector):
+        while chunk := self._pipes.read(self._report):
             self._lines += chunk
             *complete, self._lines = self._lines.split(b"\n")
             yield from complete
@@ -154,7 +147,7 @@ class WatchedProcess:
                 )
 
     def _read_output(self) -> None:
-        while chunk := _read(self._output, self._selector):
+        while chunk := self._pipes.read(self._output):
             self._size += len(chunk)
             if room := _KEPT - len(self._head):
                 self._head, chunk = self._head + chunk[:room], chunk[room:]
@@ -166,9 +159,9 @@ class WatchedProcess:
         limits, now = self._limits, time.monotonic()
         memory_limit = int(limits.memory_mb * 1e6)
         self._polls += 1
-        if self._polls % _MEMORY_POLLS == 0 and memory_used(memory_limit) > memory_limit:
+        if self._polls % _MEMORY_POLLS == 0 and self._processes.memory_used(memory_limit) > memory_limit:
             raise LimitError("memory limit", reason("memory limit", limits))
-        usage = used()
+        usage = self._processes.used()
         if usage.cpu_s > limits.total_cpu_s:
             text = f"the program computed for more than {limits.total_cpu_s:g} s in all tests: look for slow loops"
             raise LimitError("CPU time limit", text, is_final=True)
@@ -192,16 +185,6 @@ class WatchedProcess:
             raise LimitError("disk limit", reason("disk limit", self._limits))
 
 
-def _read(file: int, selector: selectors.BaseSelector) -> bytes:
-    try:
-        chunk = os.read(file, _CHUNK)
-    except BlockingIOError:
-        return b""
-    if not chunk and file in selector.get_map():
-        selector.unregister(file)  # closed by the process, which may still run
-    return chunk
-
-
 def _disk_use(folder: Path) -> tuple[int, int]:
     """Size of all files below a folder in bytes, and number of files and folders."""
     size = files = 0
@@ -209,20 +192,11 @@ def _disk_use(folder: Path) -> tuple[int, int]:
         files += len(folders) + len(names)
         for name in names:
             try:
-                size += os.lstat(os.path.join(parent, name)).st_blocks * 512
+                status = os.lstat(os.path.join(parent, name))
             except OSError:
                 continue
+            size += status.st_size if sys.platform == "win32" else status.st_blocks * 512
     return size, files
-
-
-def _reap() -> None:
-    """Wait for an end among the descendants that this process has inherited, and reap those that have ended."""
-    try:
-        os.waitpid(-1, 0)
-        while os.waitpid(-1, os.WNOHANG)[0]:
-            pass
-    except ChildProcessError:
-        pass
 
 
 def _ended(code: int) -> Ended:
