@@ -36,10 +36,10 @@ _NODE = """
 import threading, time
 import rclpy
 from geometry_msgs.msg import Twist, TwistStamped
-from rclpy.callback_groups import ReentrantCallbackGroup
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 from std_srvs.srv import Trigger
+{imports}
 
 
 class Driver(Node):
@@ -50,11 +50,16 @@ class Driver(Node):
         self.create_timer(0.1, self.drive)
         {init}
 
-    def drive(self):
+    {define} drive(self):
         {before}
         command = {type}()
         {field} = {speed}
         self.wheels.publish(command)
+
+    def go(self, goal):
+        goal.succeed()
+        self.may_go = True
+        return Fibonacci.Result()
 
 
 def main():
@@ -70,7 +75,7 @@ if __name__ == "__main__":
 """
 _GOOD = {
     "type": "Twist", "topic": "cmd_vel", "init": "pass", "before": "pass", "field": "command.linear.x",
-    "speed": "self.speed", "spin": "rclpy.spin(Driver())",
+    "speed": "self.speed", "spin": "rclpy.spin(Driver())", "imports": "", "define": "def",
 }  # fmt: skip
 _MANY = "executor = MultiThreadedExecutor(3); executor.add_node(Driver()); executor.spin()"
 _THREAD = (
@@ -78,6 +83,31 @@ _THREAD = (
     "rate = node.create_rate(10); [rate.sleep() for _ in iter(rclpy.ok, False)]"
 )
 _CALL = 'self.stop = self.create_client(Trigger, "stop")'
+_ONE = _MANY.replace("MultiThreadedExecutor(3)", "SingleThreadedExecutor()")
+_ACTION = {
+    "imports": "from rclpy.action import ActionClient, ActionServer\nfrom test_msgs.action import Fibonacci",
+    "init": 'self.may_go = False; self.server = ActionServer(self, Fibonacci, "go", self.go); '
+    'self.client = ActionClient(self, Fibonacci, "go")',
+    "before": "if not self.may_go: self.client.send_goal_async(Fibonacci.Goal()); return",
+}
+_TRANSFORM = {
+    "imports": "from tf2_ros import Buffer, TransformListener",
+    "init": "self.buffer = Buffer(); self.listener = TransformListener(self.buffer, self)",
+    "before": 'if not self.buffer.can_transform("odom", "base_link", rclpy.time.Time()): return',
+}
+_SCRIPT = """
+import time
+import rclpy
+from geometry_msgs.msg import Twist
+
+rclpy.init()
+wheels = rclpy.create_node("driver").create_publisher(Twist, "cmd_vel", 10)
+command = Twist()
+command.linear.x = 0.1
+while rclpy.ok():
+    wheels.publish(command)
+    time.sleep(0.1)
+"""
 
 
 def _node(**different: str) -> str:
@@ -106,5 +136,14 @@ CLASS: dict[str, tuple[str, int]] = {
     "Ends": (_node(spin="Driver()"), 1),
     "Exits": (_node(before="exit(0)"), 0),
     "Interrupts": (_node(before="raise KeyboardInterrupt"), 0),
+    "Own executor": (_node(spin=_ONE), 3),
+    "Coroutine": (_node(define="async def"), 3),
+    "Action": (_node(**_ACTION), 3),
+    "Transform": (_node(**_TRANSFORM), 3),
+    "Sleeping script": (_SCRIPT, 2),
+    "Floods": (_node(before="[self.wheels.publish(Twist()) for _ in range(1000)]"), 1),
+    "Not a number": (_node(speed="float('nan')"), 0),
+    "Unknown import": (_node(imports="import numpy_ros"), 0),
+    "Int parameter": (_node(init='self.declare_parameter("turn", 0.5); self.set_parameters([1])'), 0),
 }
 """Source and points of each pupil."""
