@@ -9,7 +9,7 @@ from tests.fuzz.target import Target
 
 __all__ = ["MODULE_OF", "TARGETS", "targets_of"]
 
-_MODULES = ("aseba", "networks", "bridge", "playgrounds", "robot_files", "runs", "classes", "ros")
+_MODULES = ("aseba", "networks", "bridge", "playgrounds", "robot_files", "runs", "classes", "ros", "student_nodes")
 
 
 def targets_of(module: str) -> dict[str, Target]:

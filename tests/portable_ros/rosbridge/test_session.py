@@ -14,6 +14,8 @@ from thymio_sim_ros.portable_ros.rclpy.event_handler import PublisherEventCallba
 from thymio_sim_ros.portable_ros.rclpy.parameter import Parameter
 from thymio_sim_ros.portable_ros.rclpy.parameter_client import AsyncParameterClient
 from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from thymio_sim_ros.portable_ros.rosbridge.descriptions import read_graph
+from thymio_sim_ros.portable_ros.rosbridge.operations import OperationError, decode
 from thymio_sim_ros.portable_ros.rosbridge.session import FOREIGN, NO_ROSAPI
 
 String, Float64 = message_type("std_msgs/msg/String"), message_type("std_msgs/msg/Float64")
@@ -337,3 +339,16 @@ def test_policies_that_are_not_carried_are_said() -> None:
     student.node("student").create_publisher(String, "topic", profile)
     server.run()
     assert student.reports == ["/topic: deadline and liveliness are not carried by rosbridge"]
+
+
+@pytest.mark.parametrize("policies", [{"depth": 1, 3: "a"}, {"depth": [1]}])
+def test_a_graph_with_policies_of_other_types_is_rejected(policies: dict[Any, Any]) -> None:
+    publishers = [["/topic", "std_msgs/msg/String", policies]]
+    with pytest.raises(OperationError, match=r"operation 'graph': found publishers with .*, expected \[name, type\]"):
+        read_graph({"op": "graph", "nodes": [{"name": "robot", "namespace": "/", "publishers": publishers}]})
+
+
+def test_a_text_with_half_of_a_surrogate_pair_is_rejected() -> None:
+    with pytest.raises(OperationError, match="surrogates not allowed"):
+        decode('{"op": "call_service", "service": "/\\ud800"}')
+    assert decode('{"op": "status", "msg": "\\ud83d\\ude00"}')["msg"] == "\N{GRINNING FACE}"

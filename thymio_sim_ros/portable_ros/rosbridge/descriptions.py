@@ -55,7 +55,7 @@ def _endpoints(node: Operation) -> Iterator[RemoteEndpoint]:
             match one:
                 case [str(name), str(type_name)]:
                     yield RemoteEndpoint(kind, name, type_name)
-                case [str(name), str(type_name), dict(policies)]:
+                case [str(name), str(type_name), dict(policies)] if _are_plain(policies):
                     found = RemoteEndpoint(kind, name, type_name, tuple(sorted(policies.items())))
                     assert found.qos_profile is not None  # raises OperationError for wrong policies
                     yield found
@@ -63,3 +63,8 @@ def _endpoints(node: Operation) -> Iterator[RemoteEndpoint]:
                     raise OperationError(
                         f"operation 'graph': found {ends} with {one!r:.60}, expected [name, type] or [name, type, qos]"
                     )
+
+
+def _are_plain(policies: dict[object, object]) -> bool:
+    """Whether these are names with texts and numbers; CBOR has other keys, too."""
+    return all(isinstance(key, str) and isinstance(value, str | int) for key, value in policies.items())

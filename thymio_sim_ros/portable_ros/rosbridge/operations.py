@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from typing import Any, TypeAlias
 
@@ -24,6 +25,8 @@ Operation: TypeAlias = dict[str, Any]
 CDR_BYTES = "bytes"
 """The key of a serialized message that takes the place of its fields."""
 
+_HALF_PAIR = re.compile(r"[\ud800-\udfff]|\\u[dD][89a-fA-F]")
+"""What may be half of a surrogate pair, in JSON."""
 _POLICIES = {"reliability": ReliabilityPolicy, "durability": DurabilityPolicy, "history": HistoryPolicy}
 _CARRIED = {"reliable", "best_effort", "transient_local", "volatile", "keep_last", "keep_all"}
 
@@ -43,6 +46,8 @@ def decode(frame: str | bytes) -> Operation:
     """The operation of a frame. Raises OperationError."""
     try:
         found = json.loads(frame) if isinstance(frame, str) else cbor2.loads(frame)
+        if isinstance(frame, str) and _HALF_PAIR.search(frame):
+            json.dumps(found, ensure_ascii=False).encode()  # what cannot be sent back is an error, a UnicodeEncodeError
     except (ValueError, RecursionError, cbor2.CBORError) as error:
         raise OperationError(f"found a frame of {len(frame)} bytes, expected JSON or CBOR: {error}") from error
     if not isinstance(found, dict):
