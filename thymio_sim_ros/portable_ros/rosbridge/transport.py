@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import socket
 import threading
 from collections.abc import Callable
 
@@ -18,6 +19,8 @@ from thymio_sim_ros.portable_ros.rosbridge.session import Session
 
 __all__ = ["RosbridgeError", "RosbridgeTransport"]
 
+_SEND_BUFFER = 128 * 1024
+"""What the system keeps of a connection, bytes: only before that do senders take turns."""
 _RETRY_S, _POLL_S = 1.0, 2.0
 """Time between attempts to connect, and between looks at a graph that the server does not send."""
 _PING_S, _PONG_S = 10.0, 30.0
@@ -138,6 +141,7 @@ class RosbridgeTransport:
             ping_timeout=_PONG_S,
             close_timeout=_CLOSE_S,
         ) as connection:
+            connection.transport.get_extra_info("socket").setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER)
             session = self._session = Session(self._graph, self._codec, self.wake, self._report)
             self.wake()
             tasks = [asyncio.create_task(part(connection, session)) for part in (self._read, self._write, self._poll)]
