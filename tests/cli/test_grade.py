@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.batch_runs.loop import Loop
+from thymio_sim_ros.batch_runs.failure import attempt
 from thymio_sim_ros.cli import grade as command
 from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.cli.main import main
@@ -142,7 +143,7 @@ def test_a_submission_that_no_machine_could_grade_is_said_and_repeated(
     monkeypatch.setattr(grader, "run_job", full)
 
     def run_all(function, tasks, **_):  # type: ignore[no-untyped-def]
-        yield [(index, engine._run_one(function, task)) for index, task in enumerate(tasks)]
+        yield [(index, attempt(function, task)) for index, task in enumerate(tasks)]
 
     monkeypatch.setattr(engine, "run_all", run_all)
     assert main(GRADE) == command.FAILED
@@ -179,7 +180,7 @@ def test_a_fault_of_the_machine_is_no_fault_of_the_pupil(
         raise fault
 
     def run_all(function, tasks, **_):  # type: ignore[no-untyped-def]
-        yield [(index, engine._run_one(function, task)) for index, task in enumerate(tasks)]
+        yield [(index, attempt(function, task)) for index, task in enumerate(tasks)]
 
     monkeypatch.setattr(grader, "run_job", faulty)
     monkeypatch.setattr(engine, "run_all", run_all)
