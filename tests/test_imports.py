@@ -137,6 +137,7 @@ RULES = {
         frozenset({"pyarrow"}),
         NO_WALL_CLOCK - {"time"},
     ),
+    f"{OURS}.missions": Rule(_names("aseba_vm", "engine", "missions", "sim"), never=NO_WALL_CLOCK),
     f"{OURS}.rl": Rule(_names("engine", "files", "rl", "sim"), frozenset({"gymnasium", "numpy"}), NO_WALL_CLOCK),
     f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
     f"{OURS}.testing": Rule(_names("device", "engine", "files", "sim", "testing"), frozenset({"pytest"})),

@@ -25,6 +25,7 @@ COMMANDS: Mapping[str, str] = {
     "env": "env",
     "foxglove-layout": "foxglove_layout",
     "grade": "grade",
+    "mission": "mission",
     "node": "node",
     "replay": "replay",
     "ros2": "ros2",

@@ -9,26 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from thymio_sim_ros.sim.commands import LED_FULL, LED_GROUPS
+from thymio_sim_ros.sim.commands import LED_COLORS, LED_GROUPS
 from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 from thymio_sim_ros.testing.thymio import Thymio
 
 __all__ = ["Check", "emitted", "no_contact", "reached", "shows", "slower_than"]
-
-COLORS: dict[str, tuple[int, int, int]] = {
-    name: (LED_FULL * red, LED_FULL * green, LED_FULL * blue)
-    for name, (red, green, blue) in {
-        "off": (0, 0, 0),
-        "red": (1, 0, 0),
-        "green": (0, 1, 0),
-        "blue": (0, 0, 1),
-        "yellow": (1, 1, 0),
-        "cyan": (0, 1, 1),
-        "magenta": (1, 0, 1),
-        "white": (1, 1, 1),
-    }.items()
-}
-"""Colors of the body by name: brightness of red, green, blue."""
 
 
 class Check:
@@ -118,9 +103,9 @@ def shows(thymio: Thymio, group: str, levels: str | Sequence[int], *, tolerance:
 
     Raises ValueError for an unknown color or group, or a wrong number of levels.
     """
-    if isinstance(levels, str) and levels not in COLORS:
-        raise ValueError(f"no color '{levels}': expected one of {', '.join(COLORS)}")
-    wanted = COLORS[levels] if isinstance(levels, str) else tuple(levels)
+    if isinstance(levels, str) and levels not in LED_COLORS:
+        raise ValueError(f"no color '{levels}': expected one of {', '.join(LED_COLORS)}")
+    wanted = LED_COLORS[levels] if isinstance(levels, str) else tuple(levels)
     if group not in LED_GROUPS:
         raise ValueError(f"no lights '{group}': expected one of {', '.join(LED_GROUPS)}")
     if len(wanted) != LED_GROUPS[group]:

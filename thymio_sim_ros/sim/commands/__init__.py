@@ -16,6 +16,8 @@ from thymio_sim_ros.sim.commands.driving import (
     WheelVelocities,
 )
 from thymio_sim_ros.sim.commands.lights import (
+    COLORED_GROUPS,
+    LED_COLORS,
     LED_FULL,
     LED_GESTURES,
     LED_GROUPS,
@@ -62,7 +64,9 @@ from thymio_sim_ros.sim.commands.sounds import (
 
 __all__ = [
     "BUTTONS",
+    "COLORED_GROUPS",
     "LEDS_GIVEN_BACK",
+    "LED_COLORS",
     "LED_FULL",
     "LED_GESTURES",
     "LED_GROUPS",

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 __all__ = [
+    "COLORED_GROUPS",
     "LEDS_GIVEN_BACK",
+    "LED_COLORS",
     "LED_FULL",
     "LED_GESTURES",
     "LED_GROUPS",
@@ -39,6 +41,25 @@ LED_GESTURES = ("circle", "blink", "kit", "alive")
 
 LED_FULL = 32
 """Brightness of a fully lit LED (docs/spec/thymio-robot.md section 8.1)."""
+
+
+COLORED_GROUPS = ("top", "bottom_left", "bottom_right")
+"""The groups that color the body: red, green, blue."""
+
+LED_COLORS: dict[str, tuple[int, int, int]] = {
+    name: (LED_FULL * red, LED_FULL * green, LED_FULL * blue)
+    for name, (red, green, blue) in {
+        "off": (0, 0, 0),
+        "red": (1, 0, 0),
+        "green": (0, 1, 0),
+        "blue": (0, 0, 1),
+        "yellow": (1, 1, 0),
+        "cyan": (0, 1, 1),
+        "magenta": (1, 0, 1),
+        "white": (1, 1, 1),
+    }.items()
+}
+"""Colors of the body by name: brightness of red, green, blue."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,61 @@
+"""The command `thymio-sim mission`, and the missions of the course."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from thymio_sim_ros.cli.main import main
+
+COURSE = Path(__file__).parents[2] / "docs" / "course"
+
+
+def judged(capsys: pytest.CaptureFixture[str], lesson: str, program: str, *options: str) -> tuple[int, str]:
+    folder = COURSE / lesson
+    code = main(["mission", str(folder / "mission.json"), "--program", str(folder / "programs" / program), *options])
+    return code, capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("lesson", "stars"), [("1-buttons", 2), ("3-blocks", 2), ("4-text", 2)])
+def test_the_solution_passes_and_the_start_does_not(
+    capsys: pytest.CaptureFixture[str], lesson: str, stars: int
+) -> None:
+    code, output = judged(capsys, lesson, "solution.aesl", "--json")
+    assert (code, json.loads(output)["stars"]) == (0, stars)
+    code, output = judged(capsys, lesson, "start.aesl", "--json")
+    assert (code, json.loads(output)["stars"]) == (1, 0)
+
+
+def test_a_mistake_is_said_in_words_of_the_mission_with_a_hint(capsys: pytest.CaptureFixture[str]) -> None:
+    code, output = judged(capsys, "1-buttons", "mistake.aesl")
+    assert code == 1
+    assert "[x] Its light is green while it drives forward" in output
+    assert "☆☆ not passed: It touched something, after " in output
+    assert "Hint: When the button forward" in output
+
+
+def test_texts_are_in_the_language_of_the_pupil(capsys: pytest.CaptureFixture[str]) -> None:
+    code, output = judged(capsys, "3-blocks", "solution.aesl", "--language", "de")
+    assert code == 0
+    assert output.splitlines()[:2] == ["Eine Runde mit dem Bus", "[x] Der Bus wartet auf den Knopf"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "error"),
+    [
+        ("missing.json", None, "expected a mission file"),
+        ("bad.json", '{"format": 1}', "bad.json: success: found nothing, expected a condition"),
+    ],
+)
+def test_a_file_that_cannot_be_used_is_one_line(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, name: str, text: str | None, error: str
+) -> None:
+    path = tmp_path / name
+    if text is not None:
+        path.write_text(text)
+    assert main(["mission", str(path)]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1
+    assert error in lines[0]

@@ -1,0 +1,19 @@
+"""Missions: goals as data, judged in each tick on what the simulation knows (docs/missions.md).
+
+facts         what is true or false in a tick: words of mission files
+conditions    facts combined: all, any, not, once, then, hold, at most
+mission       the values of a file
+file_fields   fields and limits of a file
+reader        reads a file; errors name the field
+schema        the JSON schema of files, for editors
+judge         a mission and an engine: checklist, stars, reasons
+lengths       how long a program is, in the unit of its language
+"""
+
+from __future__ import annotations
+
+from thymio_sim_ros.missions.judge import Judge, State, Verdict
+from thymio_sim_ros.missions.mission import Mission
+from thymio_sim_ros.missions.reader import MissionError, load_mission
+
+__all__ = ["Judge", "Mission", "MissionError", "State", "Verdict", "load_mission"]

@@ -1,0 +1,269 @@
+"""Facts of a mission: what is true or false of a robot in a tick.
+
+A fact is a frozen dataclass whose fields a mission file gives; `watch` binds it to an engine. The texts of facts are in
+the mission, so that a checklist speaks of its own story.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Protocol
+
+from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.missions.zones import Zone
+from thymio_sim_ros.sim.actuators.leds import LedState
+from thymio_sim_ros.sim.actuators.loudspeaker import LoudspeakerState
+from thymio_sim_ros.sim.commands import COLORED_GROUPS, LED_COLORS
+from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.fields import FieldError, Name, Number, Pattern
+from thymio_sim_ros.sim.model.geometry import wrap_angle
+from thymio_sim_ros.sim.playground.track_line import EVERY, SENSOR_OFFSET_M, TrackLine, TrackProgress
+from thymio_sim_ros.sim.robot.robot import Robot
+
+__all__ = ["FACTS", "Fact", "Scene", "Watch"]
+
+Watch = Callable[[], bool]
+"""Whether a fact is true now; called once in each tick."""
+
+_STILL_M_S, _STILL_RAD_S = 0.001, 0.01
+_LIGHT_TOLERANCE = 4
+"""Levels by which a light may differ from a color."""
+
+Label = Annotated[str, Pattern(r"[^\x00-\x1f\x7f\ud800-\udfff]*", "the name of a shape", 60)]
+Word = Annotated[str, Pattern(r"[A-Za-z_][A-Za-z0-9_.]*", "the name of an event", 60)]
+Group = Annotated[str, Pattern("|".join(COLORED_GROUPS), f"one of {', '.join(COLORED_GROUPS)}", 20)]
+ColorName = Annotated[str, Pattern("|".join(LED_COLORS), f"one of {', '.join(LED_COLORS)}", 20)]
+Meters = Annotated[float, Number("m", 0.0, 1000.0)]
+Speed = Annotated[float, Number("m/s", 0.0, 1.0)]
+Degrees = Annotated[float, Number("degrees", -360.0, 360.0)]
+Width = Annotated[float, Number("degrees", 0.0, 180.0)]
+Laps = Annotated[float, Number("laps", 0.0, 100.0)]
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What facts are watched in: the engine, the zones of the mission, and the robot of a fact."""
+
+    engine: Engine
+    zones: Mapping[str, Zone]
+    robot: str
+
+    def present(self) -> Robot | None:
+        """The robot, None while it is not in the world."""
+        return self.engine.world.robots.get(self.robot)
+
+    def when_present(self, check: Callable[[Robot], bool]) -> Watch:
+        """A check of the robot that is false while it is not there."""
+
+        def watch() -> bool:
+            robot = self.present()
+            return robot is not None and check(robot)
+
+        return watch
+
+
+class Fact(Protocol):
+    """A fact: a frozen dataclass. `watch` raises FieldError for a name that the playground does not have."""
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inside:
+    """The center of the robot is inside a zone."""
+
+    zone: Name
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        if self.zone not in scene.zones:
+            raise FieldError("zone", f"'{self.zone}'", fields.nearest(self.zone, tuple(scene.zones)))
+        zone = scene.zones[self.zone]
+        return scene.when_present(lambda robot: zone.contains(robot.pose.x_m, robot.pose.y_m))
+
+
+@dataclass(frozen=True, slots=True)
+class Touches:
+    """The robot touches something, or the thing of a name."""
+
+    what: Label = ""
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        playground = scene.engine.world.playground
+        names = [*(shape.name for shape in playground.shapes), *(robot.name for robot in playground.robots)]
+        if self.what and self.what not in names:
+            raise FieldError("what", f"'{self.what}'", fields.nearest(self.what, names))
+
+        def touches(robot: Robot) -> bool:
+            touching = robot.body.touching
+            return bool(touching) and (not self.what or any(each.other == self.what for each in touching.values()))
+
+        return scene.when_present(touches)
+
+
+@dataclass(frozen=True, slots=True)
+class Lights:
+    """The lights of the body have a color."""
+
+    color: ColorName
+    group: Group = "top"
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        wanted = LED_COLORS[self.color]
+
+        def shines(robot: Robot) -> bool:
+            levels = robot.state(LedState).levels[self.group]
+            return all(abs(one - other) <= _LIGHT_TOLERANCE for one, other in zip(levels, wanted, strict=True))
+
+        return scene.when_present(shines)
+
+
+@dataclass(frozen=True, slots=True)
+class Sound:
+    """The loudspeaker of the robot sounds."""
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        return scene.when_present(lambda robot: not robot.state(LoudspeakerState).is_silent)
+
+
+@dataclass(frozen=True, slots=True)
+class Still:
+    """The robot stands still."""
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        return scene.when_present(
+            lambda robot: abs(robot.twist.linear_m_s) < _STILL_M_S and abs(robot.twist.angular_rad_s) < _STILL_RAD_S
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Faster:
+    """The robot is faster than a speed, forward or backward."""
+
+    speed_m_s: Speed
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        return scene.when_present(lambda robot: abs(robot.twist.linear_m_s) > self.speed_m_s)
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """The robot looks in a direction: 0° is to the right of the playground, 90° up."""
+
+    direction_deg: Degrees
+    tolerance_deg: Width = 10.0
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        wanted, tolerance = math.radians(self.direction_deg), math.radians(self.tolerance_deg)
+        return scene.when_present(lambda robot: abs(wrap_angle(robot.pose.yaw_rad - wanted)) <= tolerance)
+
+
+@dataclass(frozen=True, slots=True)
+class Fallen:
+    """The robot has fallen off an edge."""
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        return scene.when_present(lambda robot: robot.is_fallen)
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """The robot has driven so far since the start, forward and backward."""
+
+    distance_m: Meters
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        covered, last = 0.0, scene.engine.now_ns
+
+        def has_driven(robot: Robot) -> bool:
+            nonlocal covered, last
+            now = scene.engine.now_ns
+            covered += abs(robot.twist.linear_m_s) * (now - last) / 1e9
+            last = now
+            return covered >= self.distance_m
+
+        return scene.when_present(has_driven)
+
+
+@dataclass(frozen=True, slots=True)
+class Lap:
+    """The robot has driven along a track for so many laps, in either direction."""
+
+    laps: Laps = 1.0
+    track: Label = ""
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        sampled = _progress(scene, self.track)
+        return scene.when_present(lambda robot: sampled(robot).laps >= self.laps)
+
+
+@dataclass(frozen=True, slots=True)
+class OffLine:
+    """No ground sensor of the robot was above a track once."""
+
+    track: Label = ""
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        sampled = _progress(scene, self.track)
+        limit_m = TrackLine.of(scene.engine.world.playground, self.track)[1].width_m / 2 + SENSOR_OFFSET_M
+        return scene.when_present(lambda robot: sampled(robot).farthest_m > limit_m)
+
+
+@dataclass(frozen=True, slots=True)
+class Emits:
+    """The program of the robot emits an event, in this tick."""
+
+    event: Word
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        sent = scene.robot, self.event
+        return lambda: any((robot, event.name) == sent for robot, event in scene.engine.emitted)
+
+
+def _progress(scene: Scene, track: str) -> Callable[[Robot], TrackProgress]:
+    """The progress of the robot along a track, sampled as tests sample it."""
+    try:
+        line, _ = TrackLine.of(scene.engine.world.playground, track)
+    except ValueError as error:
+        raise FieldError("track", f"'{track}'", str(error)) from error
+    progress, ticks = TrackProgress(line), 0
+
+    def sampled(robot: Robot) -> TrackProgress:
+        nonlocal ticks
+        if ticks % EVERY == 0:
+            progress.add(scene.engine.now_ns / 1e9, robot.pose)
+        ticks += 1
+        return progress
+
+    return sampled
+
+
+FACTS: Mapping[str, type[Fact]] = {
+    "inside": Inside,
+    "touches": Touches,
+    "lights": Lights,
+    "sound": Sound,
+    "still": Still,
+    "faster": Faster,
+    "heading": Heading,
+    "fallen": Fallen,
+    "driven": Driven,
+    "lap": Lap,
+    "off_line": OffLine,
+    "emits": Emits,
+}
+"""The kinds of facts by the word of a mission file."""

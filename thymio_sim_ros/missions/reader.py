@@ -1,0 +1,233 @@
+"""Reads the file of a mission (docs/missions.md): JSON, without code.
+
+Errors name the file, the key, what was found and what was expected.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.missions.conditions import read_condition
+from thymio_sim_ros.missions.facts import FACTS
+from thymio_sim_ros.missions.file_fields import (
+    FORMAT,
+    MAX_FACTS,
+    MAX_HAPPENINGS,
+    MAX_HINTS,
+    MAX_STARS,
+    MAX_ZONES,
+    NAME,
+    FactHead,
+    HappeningFields,
+    Head,
+    StarFields,
+    TextFields,
+)
+from thymio_sim_ros.missions.mission import PROGRAM_LANGUAGES, Happening, Mission, MissionFact, Star, Texts
+from thymio_sim_ros.missions.zones import ZONES, Zone
+from thymio_sim_ros.sim.commands import Clap, Command, PressButton, Tap
+from thymio_sim_ros.sim.model.fields import LANGUAGE, FieldError, Text, describe, join, nearest, read
+
+__all__ = ["MissionError", "load_mission"]
+
+MAX_BYTES = 1_000_000
+_ACTIONS = ("press", "release", "tap", "clap")
+
+T = TypeVar("T")
+
+
+class MissionError(ThymioSimError):
+    """A mission file that is refused: its path, the key, what was found and what was expected."""
+
+    def __init__(self, path: str, error: FieldError) -> None:
+        super().__init__(f"{path}: {error}")
+        self.path = path
+        self.key = error.key
+        self.found = error.found
+        self.expected = error.expected
+
+
+def load_mission(path: Path) -> Mission:
+    """Read a mission file. Paths in it start in its folder. Raises MissionError, OSError."""
+    data = path.read_bytes()
+    try:
+        if len(data) > MAX_BYTES:
+            raise FieldError("", f"{len(data)} bytes", f"at most {MAX_BYTES}")
+        try:
+            found = json.loads(data)
+        except (UnicodeDecodeError, ValueError, RecursionError) as error:
+            raise FieldError("", str(error), "JSON") from error
+        return _mission(found, path.parent)
+    except FieldError as error:
+        raise MissionError(str(path), error) from error
+
+
+def _mission(data: object, folder: Path) -> Mission:
+    members = dict(_object(data, ""))
+    version = members.pop("format", None)
+    if version != FORMAT or isinstance(version, bool):
+        raise FieldError("format", describe(version), str(FORMAT))
+    members.pop("$schema", None)
+    languages = _languages(members.pop("languages", list(PROGRAM_LANGUAGES)))
+    zones = dict(_named(members.pop("zones", {}), "zones", MAX_ZONES, _zone))
+    facts = dict(_named(members.pop("facts", {}), "facts", MAX_FACTS, _fact))
+    hints = _texts(members.pop("hints", []), "hints")
+    happens = tuple(_happening(*item) for item in _items(members.pop("happens", []), "happens", MAX_HAPPENINGS))
+    stars = tuple(_star(*item, facts) for item in _items(members.pop("stars", []), "stars", MAX_STARS))
+    programs = _programs(members.pop("programs", {}), languages, folder)
+    translations = {
+        language: _translation(texts, f"translations.{language}", facts)
+        for language, texts in _object(members.pop("translations", {}), "translations").items()
+    }
+    success, failure = members.pop("success", None), members.pop("failure", None)
+    if success is None:
+        raise FieldError("success", "nothing", "a condition")
+    read_condition(success, "success", facts)
+    if failure is not None:
+        read_condition(failure, "failure", facts)
+    head = read(Head, members, "")
+    return Mission(
+        title=head.title,
+        playground=_beside(folder, head.playground),
+        facts=facts,
+        success=success,
+        failure=failure,
+        story=head.story,
+        robot=head.robot,
+        languages=languages,
+        programs=programs,
+        zones=zones,
+        happens=tuple(sorted(happens, key=lambda each: each.at_s)),
+        time_s=head.time_s,
+        stars=stars,
+        hints=hints,
+        next=_beside(folder, head.next) if head.next else "",
+        translations=translations,
+    )
+
+
+def _zone(data: object, key: str) -> Zone:
+    return read(*_kind(data, key, ZONES), key)
+
+
+def _fact(data: object, key: str) -> MissionFact:
+    kind, members = _kind(data, key, FACTS)
+    head = read(FactHead, {name: members.pop(name) for name in ("robot", "text") if name in members}, key)
+    return MissionFact(read(kind, members, key), head.robot, head.text)
+
+
+def _kind(data: object, key: str, kinds: Mapping[str, type[T]]) -> tuple[type[T], dict[str, Any]]:
+    """The class of the member "kind", and the other members."""
+    members = dict(_object(data, key))
+    kind = members.pop("kind", None)
+    if not isinstance(kind, str) or kind not in kinds:
+        raise FieldError(join(key, "kind"), describe(kind), nearest(str(kind), tuple(kinds)))
+    return kinds[kind], members
+
+
+def _happening(data: object, key: str) -> Happening:
+    found = read(HappeningFields, data, key)
+    done = [action for action in _ACTIONS if getattr(found, action) not in (None, False)]
+    if len(done) != 1:
+        raise FieldError(key, ", ".join(done) or "nothing", f"one of {', '.join(_ACTIONS)}")
+    command: Command
+    if found.press is not None:
+        command = PressButton(found.press, True)
+    elif found.release is not None:
+        command = PressButton(found.release, False)
+    else:
+        command = Tap() if found.clap is None else Clap(round(found.clap))
+    return Happening(found.at_s, found.robot, command)
+
+
+def _star(data: object, key: str, facts: Mapping[str, MissionFact]) -> Star:
+    members = dict(_object(data, key))
+    when = members.pop("when", None)
+    found = read(StarFields, members, key)
+    given = [name for name, value in (("within_s", found.within_s), ("length", found.length), ("when", when)) if value]
+    if len(given) != 1:
+        raise FieldError(key, ", ".join(given) or "nothing", "one of within_s, length, when")
+    if when is not None:
+        read_condition(when, join(key, "when"), facts)
+    return Star(found.within_s, None if found.length is None else round(found.length), when, found.text)
+
+
+def _translation(data: object, key: str, facts: Mapping[str, MissionFact]) -> Texts:
+    if not re.fullmatch(LANGUAGE, key.rpartition(".")[2]):
+        raise FieldError(key, describe(key.rpartition(".")[2]), "a language code such as de")
+    members = dict(_object(data, key))
+    hints = _texts(members.pop("hints", []), join(key, "hints"))
+    texts = {}
+    for name, text in _object(members.pop("facts", {}), join(key, "facts")).items():
+        if name not in facts:
+            raise FieldError(join(join(key, "facts"), name), "an unknown fact", nearest(name, tuple(facts)))
+        texts[name] = _text(text, join(join(key, "facts"), name))
+    head = read(TextFields, members, key)
+    return Texts(head.title, head.story, hints, texts)
+
+
+def _programs(data: object, languages: Sequence[str], folder: Path) -> dict[str, str]:
+    found = {}
+    for language, name in _object(data, "programs").items():
+        if language not in languages:
+            raise FieldError(f"programs.{language}", "an unknown language", nearest(language, languages))
+        found[language] = _beside(folder, _text(name, f"programs.{language}"))
+    return found
+
+
+def _languages(data: object) -> tuple[str, ...]:
+    if not isinstance(data, list) or not data:
+        raise FieldError("languages", describe(data), f"a list of {', '.join(PROGRAM_LANGUAGES)}")
+    for index, language in enumerate(data):
+        if language not in PROGRAM_LANGUAGES:
+            raise FieldError(f"languages[{index}]", describe(language), nearest(str(language), PROGRAM_LANGUAGES))
+    return tuple(data)
+
+
+def _named(data: object, key: str, most: int, read_one: Callable[[object, str], T]) -> Iterator[tuple[str, T]]:
+    items = _object(data, key)
+    if len(items) > most:
+        raise FieldError(key, f"{len(items)} of them", f"at most {most}")
+    for name, value in items.items():
+        if not NAME.fullmatch(name):
+            raise FieldError(join(key, name), "this name", "letters, digits and single underscores, a letter first")
+        yield name, read_one(value, join(key, name))
+
+
+def _items(data: object, key: str, most: int) -> Iterator[tuple[object, str]]:
+    if not isinstance(data, list) or len(data) > most:
+        raise FieldError(key, describe(data), f"a list of at most {most}")
+    return ((value, f"{key}[{index}]") for index, value in enumerate(data))
+
+
+def _texts(data: object, key: str) -> tuple[str, ...]:
+    return tuple(_text(text, place) for text, place in _items(data, key, MAX_HINTS))
+
+
+@dataclass(frozen=True, slots=True)
+class _OneText:
+    text: Text
+
+
+def _text(data: object, key: str) -> str:
+    try:
+        return read(_OneText, {"text": data}, "").text
+    except FieldError as error:
+        raise FieldError(key, error.found, error.expected) from error
+
+
+def _object(data: object, key: str) -> Mapping[str, Any]:
+    if not isinstance(data, Mapping):
+        raise FieldError(key, describe(data), "an object")
+    return data
+
+
+def _beside(folder: Path, name: str) -> str:
+    """The path of a file beside the mission; a name without an ending is that of a shipped one."""
+    return str(folder / name) if Path(name).suffix else name
