@@ -137,10 +137,10 @@ RULES = {
         frozenset({"pyarrow"}),
         NO_WALL_CLOCK - {"time"},
     ),
-    f"{OURS}.missions": Rule(_names("aseba_vm", "engine", "missions", "sim"), never=NO_WALL_CLOCK),
+    f"{OURS}.missions": Rule(_names("device.programs", "engine", "missions", "sim"), never=NO_WALL_CLOCK),
     f"{OURS}.rl": Rule(_names("engine", "files", "rl", "sim"), frozenset({"gymnasium", "numpy"}), NO_WALL_CLOCK),
     f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
-    f"{OURS}.testing": Rule(_names("device", "engine", "files", "sim", "testing"), frozenset({"pytest"})),
+    f"{OURS}.testing": Rule(_names("device", "engine", "files", "missions", "sim", "testing"), frozenset({"pytest"})),
     f"{OURS}.testing.ros": Rule(ALL_OF_OURS, ROS | {"pytest"}),
     f"{OURS}.lockstep": Rule(_names("course_packages", "errors", "lockstep", "names.type_names", "portable_ros"), ROS),
     f"{OURS}.grading": Rule(

@@ -52,7 +52,7 @@ def run(mission: Callable[..., Path]) -> Run:
     def run(program: str, facts: Mapping[str, Any], *, do: Callable[[Engine], object] = id, **members: Any) -> Verdict:
         loaded = load_mission(mission(facts, **members))
         engine = Engine(load_playground(loaded.playground)[1], {"anna": load_program(program, "p")}, noise=False)
-        judge = Judge(loaded, engine, length=3)
+        judge = Judge(loaded, engine)
         do(engine)
         while not judge.is_over:
             engine.step(())
@@ -110,9 +110,9 @@ def test_what_breaks_the_mission_is_named_and_the_checklist_stays(run: Run) -> N
 
 def test_further_stars_are_for_time_length_and_a_condition(run: Run) -> None:
     facts = {"driven": {"kind": "driven", "distance_m": 0.1}, "red": {"kind": "lights", "color": "red"}}
-    in_time = run(DRIVE, facts, stars=[{"within_s": 3}, {"length": 3}])
+    in_time = run(DRIVE, facts, stars=[{"within_s": 3}, {"length": 2}])
     assert in_time.stars == (True, True, True)
-    late = run(DRIVE, facts, stars=[{"within_s": 0.5}, {"length": 2}])
+    late = run(DRIVE, facts, stars=[{"within_s": 0.5}, {"length": 1}])
     assert late.stars == (True, False, False)
     extra = {"once": "red"}
     assert run(DRIVE, facts, stars=[{"when": extra}]).stars == (True, False)
@@ -178,9 +178,9 @@ STILL = {"a": {"kind": "still"}}
     ("facts", "members", "error"),
     [
         (STILL, {"format": 2}, "format: found 2, expected 1"),
-        (STILL, {"storey": "x"}, "storey: found an unknown key, expected 'story'"),
+        (STILL, {"stories": "x"}, "stories: found an unknown key, expected 'story'"),
         (STILL, {"title": 3}, "title: found 3"),
-        ({"a": {"kind": "insid"}}, {}, "facts.a.kind: found 'insid', expected 'inside'"),
+        ({"a": {"kind": "inner"}}, {}, "facts.a.kind: found 'inner', expected one of inside"),
         ({"a": {"kind": "driven"}}, {}, "facts.a.distance_m: found nothing, expected a number of m"),
         ({"a": {"kind": "lights", "color": "pink"}}, {}, "facts.a.color: found 'pink', expected one of off, red"),
         ({"a b": {"kind": "still"}}, {}, "facts.a b: found this name"),

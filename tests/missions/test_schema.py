@@ -31,7 +31,7 @@ def test_a_mission_of_the_course_fits_it_and_its_files_are_there(path: Path) -> 
 
 @pytest.mark.parametrize(
     "change",
-    [{"success": {"all": []}}, {"facts": {"a": {"kind": "x"}}}, {"time_s": -1}, {"storey": ""}, {"stars": [{"x": 1}]}],
+    [{"success": {"all": []}}, {"facts": {"a": {"kind": "x"}}}, {"time_s": -1}, {"stories": ""}, {"stars": [{"x": 1}]}],
 )
 def test_the_schema_refuses_what_the_reader_refuses(change: dict[str, object]) -> None:
     mission = json.loads(MISSIONS[0].read_text(encoding="utf-8")) | change

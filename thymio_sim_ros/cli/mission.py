@@ -11,11 +11,9 @@ from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import check_files, path_argument
 from thymio_sim_ros.cli.output import print_json, print_text
 from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.device.programs.program import parse
 from thymio_sim_ros.engine.engine import Engine
-from thymio_sim_ros.files.loading import NO_PROGRAM, read_text
-from thymio_sim_ros.missions import Judge, Mission, MissionError, State, Verdict, load_mission
-from thymio_sim_ros.missions.lengths import length_of
+from thymio_sim_ros.files.loading import NO_PROGRAM
+from thymio_sim_ros.missions import Judge, Mission, MissionError, Verdict, load_mission
 from thymio_sim_ros.sim.model.fields import FieldError
 
 __all__ = ["run"]
@@ -36,7 +34,7 @@ def run(argv: Sequence[str]) -> int:
     print_json(_result(mission, judge)) if options.json else print_text(
         _report(mission, judge.verdict, options.language)
     )
-    return 0 if judge.verdict.state is State.PASSED else NOT_PASSED
+    return 0 if judge.verdict.is_passed else NOT_PASSED
 
 
 def _mission(path: Path) -> Mission:
@@ -53,9 +51,8 @@ def _judge(mission: Mission, program: str, seed: int) -> Judge:
     playground, assignments = check_files(mission.playground, program, "", THYMIO)
     robot = mission.robot or next((start.name for start in playground.robots), "")
     programs = {name: found.program for name, found in assignments.items() if found.program is not None}
-    length = None if program == NO_PROGRAM else length_of(parse(read_text(program)[0]))[0]
     engine = Engine(playground, {name: one for name, one in programs.items() if name == robot}, seed=seed)
-    judge = Judge(mission, engine, length)
+    judge = Judge(mission, engine)
     while not judge.is_over:
         engine.step(())
         judge.tick()
@@ -69,7 +66,7 @@ def _report(mission: Mission, verdict: Verdict, language: str) -> str:
         texts = ", ".join(mission.text_of(fact, language) for fact in item.facts)
         lines.append(f"{_DONE if item.is_done else _OPEN} {texts}")
     stars = "".join(_STAR if has else _NO_STAR for has in verdict.stars)
-    if verdict.state is State.PASSED:
+    if verdict.is_passed:
         lines.append(f"{stars} passed after {verdict.at_s:.2f} s")
     else:
         broken = ", ".join(mission.text_of(fact, language) for fact in verdict.broken)

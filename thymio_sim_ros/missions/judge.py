@@ -9,6 +9,7 @@ from enum import Enum
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.missions.conditions import Condition, Facts, names_in, read_condition
 from thymio_sim_ros.missions.facts import Scene, Watch
+from thymio_sim_ros.missions.lengths import length_of
 from thymio_sim_ros.missions.mission import Mission, Star
 from thymio_sim_ros.sim.model.fields import FieldError, join, nearest
 from thymio_sim_ros.sim.model.geometry import Point
@@ -51,6 +52,11 @@ class Verdict:
     broken: tuple[str, ...] = ()
 
     @property
+    def is_passed(self) -> bool:
+        """Whether it is passed."""
+        return self.state is State.PASSED
+
+    @property
     def is_late(self) -> bool:
         """Whether it has failed because its time is over."""
         return self.state is State.FAILED and not self.broken
@@ -88,12 +94,9 @@ class Judge:
     `tick` has to be called after each step of the engine.
     """
 
-    def __init__(self, mission: Mission, engine: Engine, length: int | None = None) -> None:
-        """`length` is that of the program, if it is known.
-
-        Raises FieldError for a name that the playground does not have.
-        """
-        self._mission, self._engine, self._length = mission, engine, length
+    def __init__(self, mission: Mission, engine: Engine) -> None:
+        """Raises FieldError for a name that the playground does not have."""
+        self._mission, self._engine = mission, engine
         self.robot = mission.robot or next(iter(engine.world.robots), "")
         """The robot that the pupil programs."""
         self._begin_ns = engine.now_ns
@@ -151,7 +154,8 @@ class Judge:
         if star.within_s is not None:
             return now_s <= star.within_s
         if star.length is not None:
-            return self._length is not None and self._length <= star.length
+            host = self._engine.hosts.get(self.robot)
+            return host is not None and length_of(host.program)[0] <= star.length
         return extra
 
     def _watch(self, name: str) -> Watch:

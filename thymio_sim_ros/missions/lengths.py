@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
-from aseba_vm.aesl.network import Network
+from thymio_sim_ros.device.programs.program import ThymioProgram, parse
 
 __all__ = ["length_of"]
 
@@ -15,15 +14,12 @@ _BLOCK = re.compile(r"<(?:block|shadow)\s")
 _VPL, _BLOCKS = "ThymioVisualProgramming", "ThymioBlockly"
 
 
-def length_of(network: Network) -> tuple[int, str]:
-    """Return the length of all programs of a file and its unit: rows of VPL, blocks, or lines with code."""
-    plugins = [plugin for node in network.nodes for plugin in node.plugins]
+def length_of(program: ThymioProgram) -> tuple[int, str]:
+    """Return the length of all programs of its file and their unit: rows of VPL, blocks, or lines with code."""
+    nodes = parse(program.text or program.source).nodes
     for name, part, unit in ((_VPL, _ROW, "rows"), (_BLOCKS, _BLOCK, "blocks")):
-        made = [plugin.xml for plugin in plugins if plugin.name == name]
+        made = [plugin.xml for node in nodes for plugin in node.plugins if plugin.name == name]
         if made:
             return sum(len(part.findall(xml)) for xml in made), unit
-    return sum(_lines(node.code.splitlines()) for node in network.nodes), "lines"
-
-
-def _lines(lines: Sequence[str]) -> int:
-    return sum(bool(line.partition("#")[0].strip()) for line in lines)
+    lines = [line for node in nodes for line in node.code.splitlines()]
+    return sum(bool(line.partition("#")[0].strip()) for line in lines), "lines"

@@ -8,6 +8,7 @@ from __future__ import annotations
 from thymio_sim_ros.testing.checks import Check, emitted, no_contact, reached, shows, slower_than
 from thymio_sim_ros.testing.classroom import Classroom
 from thymio_sim_ros.testing.line_following import followed_line
+from thymio_sim_ros.testing.mission import judged
 from thymio_sim_ros.testing.record import Event, Moment, Touch
 from thymio_sim_ros.testing.thymio import Thymio
 
@@ -20,6 +21,7 @@ __all__ = [
     "Touch",
     "emitted",
     "followed_line",
+    "judged",
     "no_contact",
     "reached",
     "shows",
