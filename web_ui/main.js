@@ -13,6 +13,7 @@
 
 import { tokenIn, resolveToken } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
+import { isOutdated, keepPage } from "./browser/kept_page.js";
 import { localStore, tabStore } from "./browser/local_storage.js";
 import { MotionSetting } from "./browser/motion_setting.js";
 import { OpenedFile } from "./browser/opened_file.js";
@@ -196,6 +197,7 @@ class Page {
       emit: (event) => {
         store.dispatch(event.type === "message" ? { ...event, nowMs: performance.now() } : event);
         program.receive(event, store.state.selected);
+        if (event.type === "connected") void isOutdated().then((is) => is && store.dispatch({ type: "outdated" }));
       },
       wants: (topic) => isWatched(store.state, topic) || program.wants(topic),
       urgency: (topic) => urgencyOf(store.state, topic),
@@ -337,6 +339,7 @@ async function main() {
   const [address, shapes] = await Promise.all([bridgeAddress(), fetchShapes()]);
   if (shapes !== null) registerShapes(shapes); // before the first playground is read
   new Page({ token, address }).start();
+  void keepPage();
 }
 
 void main();

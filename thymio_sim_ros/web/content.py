@@ -31,6 +31,7 @@ TYPES = {
     ".gif": "image/gif",
     ".cur": "image/x-icon",
     ".ico": "image/x-icon",
+    ".webmanifest": "application/manifest+json",
     ".wasm": "application/wasm",
     ".woff2": "font/woff2",
     ".mp3": "audio/mpeg",

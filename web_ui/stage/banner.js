@@ -1,18 +1,22 @@
-// Why there is no connection, over the view.
+// Why there is no connection, or that this page is older than its server, over the view.
 
 import { h, setText } from "../ui/dom.js";
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function bannerPanel({ text, address }) {
   const t = text("page");
-  const element = h("p", { class: "banner note-box wait", hidden: true });
+  const words = h("span");
+  const reload = h("button", { type: "button", class: "btn", onclick: () => location.reload() }, t("outdated.reload"));
+  const element = h("p", { class: "banner note-box wait", hidden: true }, words, " ", reload);
   return {
     slot: "messages",
     element,
-    render({ connection }) {
+    render({ connection, outdated }) {
       const isConnected = connection === "connected";
-      element.hidden = isConnected;
-      setText(element, isConnected ? "" : t(`connection.${connection}Long`, { address }));
+      element.hidden = isConnected && !outdated;
+      reload.hidden = !isConnected;
+      if (isConnected) setText(words, outdated ? t("outdated") : "");
+      else setText(words, t(`connection.${connection}Long`, { address }));
     },
   };
 }

@@ -52,6 +52,7 @@ import { applyTransforms } from "./transforms.js";
 /**
  * @typedef {object} State
  * @property {"connecting" | "connected" | "lost" | "blocked" | "noToken" | "wrongToken"} connection
+ * @property {boolean} outdated   whether the server has a newer page than this one
  * @property {boolean} readOnly   whether the server restricts this page to read-only access
  * @property {boolean} identified    whether the server of this connection has identified itself
  * @property {string} server
@@ -78,6 +79,7 @@ import { applyTransforms } from "./transforms.js";
 
 /**
  * @typedef {{ type: "connecting", address: string } | { type: "connected" } | { type: "disconnected", isBlocked?: boolean }
+ *   | { type: "outdated" }
  *   | { type: "refused", withToken: boolean }
  *   | { type: "serverInfo", name: string, sessionId: string, capabilities: string[], readOnly?: boolean }
  *   | { type: "channels", topics: string[] }
@@ -109,6 +111,7 @@ export const CONNECTION = "connection";
 /** @type {State} */
 export const INITIAL = {
   connection: "connecting",
+  outdated: false,
   readOnly: false,
   identified: false,
   server: "",
@@ -149,6 +152,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
   connected: (state) =>
     withoutNotices({ ...state, connection: "connected", identified: false, services: [], topics: [] }, [CONNECTION]),
   disconnected: (state, { isBlocked = false }) => ({ ...state, connection: isBlocked ? "blocked" : "lost" }),
+  outdated: (state) => ({ ...state, outdated: true }),
   refused: (state, { withToken }) => ({ ...state, connection: withToken ? "wrongToken" : "noToken" }),
   serverInfo(state, { name, sessionId, readOnly = false }) {
     const known = { ...state, identified: true, server: name, sessionId, readOnly };
@@ -156,9 +160,9 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
     // On the same connection the simulation was restarted: topics stay, time is reset.
     if (state.identified) return { ...known, timeNs: 0 };
     // Another simulator: discard the data of the previous one.
-    const { connection, notices, noticeCount, selected, sensorsShown } = state;
+    const { connection, outdated, notices, noticeCount, selected, sensorsShown } = state;
     const remaining = notices.filter(({ cause }) => !isSimulatorCause(cause));
-    const own = { connection, notices: remaining, noticeCount, selected, sensorsShown };
+    const own = { connection, outdated, notices: remaining, noticeCount, selected, sensorsShown };
     return { ...INITIAL, ...own, readOnly, identified: true, server: name, sessionId };
   },
   channels: withChannels,
