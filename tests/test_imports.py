@@ -153,6 +153,7 @@ RULES = {
         frozenset({"pytest"}),
     ),
     f"{OURS}.pytest_plugin": Rule(ALL_OF_OURS, frozenset({"pytest"})),
+    f"{OURS}.notebook": Rule(ALL_OF_OURS, frozenset({"jupyter_server"})),
     f"{OURS}.cli": Rule(ALL_OF_OURS),
     f"{OURS}.cli.banner": Rule(ALL_OF_OURS, frozenset({"segno"})),
     OURS: Rule(ALL_OF_OURS),
