@@ -12,7 +12,15 @@ from thymio_sim_ros.files import resources
 
 __all__ = ["ARGUMENTS", "launcher"]
 
-ARGUMENTS = ("--foxglove-port", "0", "--no-aseba", "--no-tdm", "--trusted-proxy", "127.0.0.1", "--trusted-proxy", "::1")
+ARGUMENTS = (
+    "--no-foxglove-port",
+    "--no-aseba",
+    "--no-tdm-ports",
+    "--trusted-proxy",
+    "127.0.0.1",
+    "--trusted-proxy",
+    "::1",
+)
 """Options of a suite behind jupyter-server-proxy: its page's port is the only one."""
 
 _BINDER = "BINDER_LAUNCH_HOST"
