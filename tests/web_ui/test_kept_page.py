@@ -48,10 +48,10 @@ def test_a_page_whose_server_is_away_opens_and_connects_when_it_is_back(suite, k
     playwright.expect(banner).to_contain_text("tries again every second")
     suite(*arguments, ports=ports)
     wait_for_port(ports[1])
-    page.wait_for_function("() => window.thymio.connected")
+    page.wait_for_function("() => window.thymio?.connected")
     playwright.expect(banner).to_have_count(0)
     page.goto(f"{address}?token=secret")
-    page.wait_for_function("() => window.thymio.connected")
+    page.wait_for_function("() => window.thymio?.connected")
     assert not [url for url in page.evaluate(KEPT) if "token" in url]
 
 
@@ -61,7 +61,7 @@ def test_a_page_that_is_older_than_its_server_says_so_and_reloads(suite, own_pag
     address = suite(*arguments, ports=ports)
     open_page(own_page, address)
     suite.end()
-    own_page.wait_for_function("() => !window.thymio.connected")
+    own_page.wait_for_function("() => !window.thymio?.connected")
     older = own_page.evaluate("document.querySelector('script[type=module]').getAttribute('src')")
     own_page.route(address, lambda route: newer(route, older))
     suite(*arguments, ports=ports)
