@@ -28,6 +28,7 @@ from tests.ros.aseba_tools import Status, event, get_variables, set_parameters
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams
 from thymio_sim_ros.ros.interface.names import RobotNames
+from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 
 FILE = '<network><event size="1" name="ping"/><event size="1" name="pong"/><node name="thymio-II">{}</node></network>'
 OWN = FILE.format("var own = 5\nonevent ping\nown = event.args[0]\nemit pong own\n")
@@ -119,6 +120,11 @@ def test_variables_and_pause_are_seen_on_both_sides(ros, network):
     ros.until(lambda: status["state"] == "paused")
     assert get_variables(ros, "motor.left.target") == [[-77]]
     assert network.work(lambda: client.ask(GetVariables(0, 1, address, 1), Variables)).values == (-77,)
+
+
+def test_an_unknown_server_on_the_page_is_rejected(runtime):
+    with pytest.raises(StartError, match=r"network\.on_page: found 'ftp', expected some of tdm, http"):
+        runtime("", network=NetworkParams(aseba_port=0, on_page=("tdm", "ftp")))
 
 
 def test_robots_have_ports_in_order_and_keep_them(ros, network):

@@ -28,7 +28,7 @@ from std_msgs.msg import String
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
 from thymio_sim_ros.device.options import OptionError
 from thymio_sim_ros.files.loading import shipped_behaviours
-from thymio_sim_ros.network.settings import NetworkSettings
+from thymio_sim_ros.network.settings import HTTP, TDM, NetworkSettings
 from thymio_sim_ros.ros.aseba import parameters as aseba_params
 from thymio_sim_ros.ros.aseba.check_service import CheckService
 from thymio_sim_ros.ros.aseba.diagnostics import RuntimeDiagnostics
@@ -171,6 +171,7 @@ class AsebaRuntime:
         self.network: NetworkLink | None = None
         """The servers by which other programs reach the robots, if any is on."""
         if not (settings := params.network.settings).is_off:
+            _check_servers(settings)
             tokens = _tokens(node, settings) if tokens is None else tokens
             self.network = NetworkLink(
                 node, self.robots, settings, first_id=params.first_id, tokens=tokens, thread=thread
@@ -235,6 +236,13 @@ def _repeat(parameter: str) -> str:
     """Return how a robot runs its program again, for a parameter that chooses the program."""
     is_program = parameter.endswith(("script.path", "script.source")) or parameter == BEHAVIOUR
     return "the services aseba/reset and aseba/run of a robot restart its program" if is_program else ""
+
+
+def _check_servers(settings: NetworkSettings) -> None:
+    """Raise StartError for an unknown server."""
+    for name in settings.on_page:
+        if name not in (TDM, HTTP):
+            raise StartError(f"parameter network.on_page: found {name!r}, expected some of {TDM}, {HTTP}")
 
 
 def _tokens(node: Node, settings: NetworkSettings) -> Tokens:
