@@ -89,6 +89,21 @@ def test_a_page_of_this_machine_is_accepted() -> None:
     assert run(scenario()).name == "test"
 
 
+def test_without_clients_the_event_loop_is_not_woken_and_the_first_one_gets_what_was_posted() -> None:
+    async def scenario() -> None:
+        async with bridge() as server:
+            before = len(server.server._pending)
+            for number in range(20, 30):
+                server.server.execute(ev.AddChannels((ms.Channel(number, f"/t{number}", "cdr", "t", ""),)))
+                await asyncio.sleep(0)
+            assert len(server.server._pending) == before + 10
+            async with server.client() as client:
+                assert [each.id for each in (await client.next(ms.Advertise)).channels] == [10, *range(20, 30)]
+                assert not server.server._pending
+
+    run(scenario())
+
+
 def test_messages_reach_every_subscriber_under_its_own_id() -> None:
     async def scenario() -> None:
         async with bridge() as server, server.client() as one, server.client() as two:

@@ -52,6 +52,8 @@ _SLICE_S = 0.002
 """Processor time of the event loop that one client may use before other clients are served, s."""
 _MAX_PENDING = 1000
 """Messages and commands that wait for the event loop; the thread of a further one waits until they are processed."""
+_MAX_IDLE = 100
+"""Messages and commands that may wait while there are no clients."""
 _MAX_WAIT_S = 1.0
 """Longest time that a thread waits for the event loop."""
 _TIME_SLOT = -1
@@ -123,8 +125,9 @@ class BridgeServer:
 
     def _post(self, work: _Work) -> None:
         self._pending.append(work)
-        # Reset before the loop begins to process: what is appended later wakes it again.
-        if not self._is_woken:
+        # Reset before the loop begins to process: what is appended later wakes it again. Without clients, such as most
+        # of the time, only the simulated time is posted, and waits for the first one (`join`).
+        if not self._is_woken and (self._queues or len(self._pending) > _MAX_IDLE):
             self._is_woken = True
             with contextlib.suppress(RuntimeError):  # the loop has ended
                 self._loop.call_soon_threadsafe(self._process)
@@ -197,7 +200,8 @@ class BridgeServer:
     def join(self, queue: ClientSendQueue, role: Role, *, is_rosbridge: bool) -> int:
         """Add a client; return its number."""
         client = next(self._client_ids)
-        self._queues[client] = queue
+        self._queues[client] = queue  # before what is pending is processed: what is posted now wakes the loop
+        self._process()
         if is_rosbridge:
             self.sink.post(RosbridgeJoined(client, role))
         else:
