@@ -112,6 +112,11 @@ class Connections:
             slot.close()
         return len(overdue)
 
+    def close_all(self) -> None:
+        """Close all connections."""
+        for slot in list(self._slots):
+            slot.close()
+
     def eviction_candidate(self, min_wait_s: Mapping[Phase, float] = MIN_WAIT_S) -> ConnectionSlot | None:
         """The connection to close for a new one if it stays idle, or None if there is none at the moment.
 

@@ -9,12 +9,13 @@ the answer has no end. A connection that becomes a WebSocket is a stream: its se
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import selectors
 import ssl
 from collections.abc import Awaitable, Callable, Iterable, Mapping
 from functools import partial
-from socket import SO_SNDBUF, SOL_SOCKET, socket
+from socket import SHUT_RDWR, SO_SNDBUF, SOL_SOCKET, socket
 from types import MappingProxyType
 from typing import Any, cast
 
@@ -84,7 +85,7 @@ class _Connection(web.RequestHandler):
         """Connect the slot with the transport."""
         plain = cast(asyncio.Transport, transport)
         descriptor = plain.get_extra_info("socket").fileno()
-        self._slot.close = plain.abort
+        self._slot.close = partial(_abort, plain)
         self._slot.has_pending_io = lambda: _is_ready(
             descriptor, selectors.EVENT_WRITE if self._slot.phase is Phase.STALLED else selectors.EVENT_READ
         )
@@ -289,6 +290,9 @@ class HttpConnections:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         await self._server.shutdown(_CLOSE_S)
+        self.slots.close_all()  # with TLS, connections would wait for their clients beyond the end of the loop
+        for _ in range(_ITERATIONS):
+            await asyncio.sleep(0)
 
     async def _close_overdue(self) -> None:
         while True:
@@ -317,6 +321,13 @@ async def _readable(listener: socket) -> None:
         await ready.wait()
     finally:
         loop.remove_reader(listener)
+
+
+def _abort(transport: asyncio.Transport) -> None:
+    """Close a connection at once. `abort` alone has no effect on one with TLS that was closed twice (Python 3.11)."""
+    transport.abort()
+    with contextlib.suppress(OSError):  # it is closed
+        transport.get_extra_info("socket").shutdown(SHUT_RDWR)
 
 
 def _is_ready(descriptor: int, events: int) -> bool:
