@@ -4,9 +4,9 @@ import { h, setText } from "../ui/dom.js";
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
 export function bannerPanel({ text, address }) {
-  const t = text("page");
+  const pageText = text("page");
   const words = h("span");
-  const reload = h("button", { type: "button", class: "btn", onclick: () => location.reload() }, t("outdated.reload"));
+  const reload = h("button", { type: "button", class: "btn", onclick: () => location.reload() }, pageText("outdated.reload"));
   const element = h("p", { class: "banner note-box wait", hidden: true }, words, " ", reload);
   return {
     slot: "messages",
@@ -15,8 +15,8 @@ export function bannerPanel({ text, address }) {
       const isConnected = connection === "connected";
       element.hidden = isConnected && !outdated;
       reload.hidden = !isConnected;
-      if (isConnected) setText(words, outdated ? t("outdated") : "");
-      else setText(words, t(`connection.${connection}Long`, { address }));
+      if (isConnected) setText(words, outdated ? pageText("outdated") : "");
+      else setText(words, pageText(`connection.${connection}Long`, { address }));
     },
   };
 }
