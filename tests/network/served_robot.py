@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from typing import TypeVar
 
 from aseba_vm.protocol import Message
@@ -61,14 +62,16 @@ class ServedRobot:
         assert self.warnings == []
 
     def _in_thread(self, function: Callable[[], T]) -> T:
-        found: list[T] = []
-        done = asyncio.run_coroutine_threadsafe(_call(function, found), self._thread._loop)
-        done.result(PATIENCE_S)
-        return found[0]
+        done: Future[T] = Future()
 
+        def call() -> None:
+            try:
+                done.set_result(function())
+            except BaseException as error:
+                done.set_exception(error)
 
-async def _call(function: Callable[[], T], found: list[T]) -> None:
-    found.append(function())
+        self._thread.call(call)
+        return done.result(PATIENCE_S)
 
 
 class _Nodes:

@@ -41,8 +41,8 @@ def new_page(browser: Any, *, compares_pictures: bool = False, **options: Any) -
     here; not so for tests that compare pictures.
     """
     scale = 1 if compares_pictures else 0.5
-    usual = {"viewport": SIZE, "device_scale_factor": scale, "service_workers": "block"}
-    page = browser.new_context(bypass_csp=True, **usual | options).new_page()  # bypass_csp: waiting evaluates
+    usual = {"viewport": SIZE, "device_scale_factor": scale, "service_workers": "block", "bypass_csp": True}
+    page = browser.new_context(**usual | options).new_page()  # bypass_csp: waiting evaluates
     page.set_default_timeout(PATIENCE_MS)
     if not compares_pictures:
         page.context.add_init_script(SLOW_DISPLAY)
