@@ -22,23 +22,28 @@ wait = [sys.executable, "-c", "import time; time.sleep(10000)"]
 child = subprocess.Popen(wait)
 leaver = subprocess.Popen(wait, start_new_session=True)
 middle = "import subprocess, sys; print(subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL).pid)"
-orphan = subprocess.run([sys.executable, "-c", middle, *wait], stdout=subprocess.PIPE, check=True).stdout.decode()
-print(child.pid, leaver.pid, orphan, flush=True)
+orphan = subprocess.run([sys.executable, "-c", middle, *wait], stdout=subprocess.PIPE, check=True).stdout
+print(child.pid, leaver.pid, int(orphan), flush=True)
 while True: pass
 """
 
 
 @pytest.fixture
 def family() -> Iterator[tuple[object, subprocess.Popen[bytes], list[int]]]:
-    """The tracker, a busy process, and its child, its child with a session of its own, and its orphaned grandchild."""
+    """The tracker, a busy process, and its child, its child with a session of its own, and its orphaned grandchild.
+
+    Another child of this process is left alone.
+    """
     tracked = tracked_processes.TrackedProcesses(Limits())
     started = subprocess.Popen([sys.executable, "-c", FAMILY], stdout=subprocess.PIPE, **tracked.options())
     tracked.started(started)
     assert started.stdout is not None
     with started.stdout as output:
         pids = list(map(int, output.readline().split()))
-    yield tracked, started, pids
-    tracked.end(started)
+    with subprocess.Popen([sys.executable, "-c", "import sys; sys.stdin.read()"], stdin=subprocess.PIPE) as other:
+        yield tracked, started, pids
+        tracked.end(started)
+        assert other.poll() is None
 
 
 def test_all_are_counted_and_ended(family) -> None:  # type: ignore[no-untyped-def]  # the module may be missing

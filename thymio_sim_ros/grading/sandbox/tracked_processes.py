@@ -80,8 +80,10 @@ class TrackedProcesses:
             with contextlib.suppress(psutil.Error, OSError):
                 if os.getsid(pid) == self._session:
                     self._cpu_s.setdefault(psutil.Process(pid), 0.0)
-        for process in psutil.Process().children(recursive=True):
-            self._cpu_s.setdefault(process, 0.0)
+        for known in list(self._cpu_s):
+            with contextlib.suppress(psutil.Error):
+                for process in known.children(recursive=True):
+                    self._cpu_s.setdefault(process, 0.0)
         return [one for one in self._cpu_s if _runs(one)]
 
 
