@@ -3,6 +3,7 @@
 
 import { Markers } from "../playground/markers.js";
 import { fileNameOf, write } from "../playground/document.js";
+import { writeDraft } from "../playground/draft_text.js";
 import { partsOf } from "../playground/parts.js";
 import { Pictures } from "../playground/pictures.js";
 import { worldOf } from "../playground/world.js";
@@ -163,7 +164,7 @@ export class CreatorSession {
     const other = this.saved.get(playground.draft ?? "");
     if (other === undefined || playground === other) return playground === other;
     if (this.compared?.of !== playground || this.compared.as !== other) {
-      this.compared = { of: playground, as: other, same: write(playground) === write(other) };
+      this.compared = { of: playground, as: other, same: writeDraft(playground) === writeDraft(other) };
     }
     return this.compared.same;
   }
@@ -175,7 +176,7 @@ export class CreatorSession {
     this.isTooLarge = false;
     if (this.untouched.has(playground) && !this.drafts.has(id)) return;
     try {
-      this.drafts.keep({ id, title, inFile: this.#isInFile(playground), text: this.text });
+      this.drafts.keep({ id, title, inFile: this.#isInFile(playground), text: writeDraft(playground) });
     } catch {
       this.isTooLarge = true;
       this.model.report({ word: "status.noDraft" });

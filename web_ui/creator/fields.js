@@ -68,6 +68,7 @@ export function numberControl(setting, key, field) {
   const { element, report, show, apply } = labeled(setting, key, input, unit);
   let value = NaN;
   const applyInput = () => {
+    if (field.nullable && input.value === "" && !input.validity.badInput) return apply(null);
     const wanted = toFile(input.valueAsNumber, field.unit);
     const [low, high] = [field.low ?? -Infinity, field.high ?? Infinity];
     if (wanted >= low && wanted <= high) return apply(wanted);
@@ -117,8 +118,16 @@ function flagControl({ labels, kind = "", commit }, key) {
   };
 }
 
-/** Selects the door that a plate opens. @param {Setting} setting @param {string} key @returns {Control} */
-function doorControl(setting, key) {
+/**
+ * Selects one of some values.
+ *
+ * @param {Setting} setting
+ * @param {string} key
+ * @param {() => readonly string[]} choices
+ * @param {(value: string) => string} [shown]   how a value is called
+ * @returns {Control}
+ */
+export function choiceControl(setting, key, choices, shown = (value) => value) {
   const select = h("select", { "data-field": key });
   const { element, apply } = labeled(setting, key, select);
   select.addEventListener("change", () => apply(select.value));
@@ -126,10 +135,10 @@ function doorControl(setting, key) {
   return {
     element,
     update(values) {
-      const names = setting.doors();
+      const names = choices();
       if (names.join() !== listed) {
         listed = names.join();
-        select.replaceChildren(...names.map((name) => h("option", { value: name }, name)));
+        select.replaceChildren(...names.map((name) => h("option", { value: name }, shown(name))));
       }
       select.value = values[key];
     },
@@ -258,7 +267,7 @@ function groupControl(setting, key, field) {
  */
 export function control(setting, key, field) {
   const { type } = field;
-  if (key === "door") return doorControl(setting, key);
+  if (key === "door") return choiceControl(setting, key, setting.doors);
   if (type === "number") return numberControl(setting, key, field);
   if (type === "flag") return flagControl(setting, key);
   if (type === "points") return pointsControl(setting, key, field);

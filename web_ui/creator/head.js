@@ -4,12 +4,15 @@ import { download } from "../browser/download.js";
 import { textOf } from "../browser/text_file.js";
 import { BUILT_IN } from "../playground/declarations.js";
 import { parse } from "../playground/document.js";
+import { problemsOf } from "../playground/mission.js";
+import { pack, unpack } from "../playground/mission_file.js";
 import { Fault, fits } from "../playground/rules.js";
 import { reasonOfFault, refusalView } from "../playground_tab/refusal.js";
 import { h, lock, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
 import { newPlayground, titled } from "./commands.js";
+import { usualText } from "./mission_form.js";
 
 /** @typedef {import("../browser/opened_file.js").Place} Place */
 /** @typedef {import("../i18n/index.js").Translate} Translate */
@@ -89,8 +92,9 @@ export class Head {
     const { labels, context } = this.options;
     const { language } = context;
     this.refuse(null);
-    const content = await textOf(chosen);
     const headline = labels.t("file.refused", { name: chosen.name });
+    if (/\.zip$/i.test(chosen.name)) return this.#openMission(chosen, headline, place);
+    const content = await textOf(chosen);
     if (content === null) {
       const reason = { phrase: { word: "fault.json" }, place: null, technical: chosen.type };
       return this.refuse(refusalView(language, headline, reason), place);
@@ -103,11 +107,24 @@ export class Head {
     }
   }
 
+  /** @param {File} chosen @param {string} headline @param {Place | null} place */
+  async #openMission(chosen, headline, place) {
+    const bytes = new Uint8Array(await chosen.arrayBuffer());
+    try {
+      this.#replace(unpack(bytes), { word: "change.opened", values: { name: chosen.name } }, true);
+    } catch (error) {
+      if (!(error instanceof Fault)) throw error;
+      const { key, expected, message } = error;
+      const phrase = { ...expected, values: { key, ...expected.values } };
+      this.refuse(refusalView(this.options.context.language, headline, { phrase, place: null, technical: message }), place);
+    }
+  }
+
   #fileField() {
     const field = h("input", {
       type: "file",
       id: "creator-file",
-      accept: ".json",
+      accept: ".json,.zip",
       hidden: true,
       "aria-label": this.options.labels.t("file.openHelp"),
     });
@@ -141,10 +158,16 @@ export class Head {
   }
 
   #save() {
-    const { session, report } = this.options;
-    download(session.fileName, session.text, "application/json");
+    const { session, report, labels } = this.options;
+    const { playground } = session.model;
+    const isMission = playground.mission !== undefined;
+    const [problem] = problemsOf(playground);
+    if (problem !== undefined) return report(problem.phrase);
+    const name = isMission ? session.fileName.replace(/json$/, "zip") : session.fileName;
+    if (isMission) download(name, pack(playground, (goal) => usualText(labels.t, goal)), "application/zip");
+    else download(name, session.text, "application/json");
     session.noteSaved();
-    report({ word: "status.saved", values: { name: session.fileName } });
+    report({ word: "status.saved", values: { name } });
   }
 
   #create() {

@@ -16,6 +16,7 @@ import { ItemForm } from "./form.js";
 import { Head } from "./head.js";
 import { itemList } from "./item_list.js";
 import { watchCreatorKeys } from "./keys.js";
+import { missionForm } from "./mission_form.js";
 import { palette } from "./palette.js";
 import { placingHint } from "./placing_hint.js";
 import { playgroundForm } from "./playground_form.js";
@@ -58,13 +59,14 @@ export class Creator {
     this.bar = bar(labels, model);
     const form = new ItemForm(setting, model);
     const whole = playgroundForm(setting, model);
+    const mission = missionForm({ setting, model, openProgram: () => context.program.openProgram() });
     const list = itemList(labels, model);
     const notes = warnings(labels, model);
     const tools = palette({ labels, model, canvas });
     const hints = placingHint({ labels, model, canvas });
     const over = contextBar({ labels, model, scene });
     const views = stageTools({ labels, model, canvas });
-    this.parts = [tools, views, hints, over, this.bar, notes, form, whole, list];
+    this.parts = [tools, views, hints, over, this.bar, notes, form, whole, mission, list];
     const caret = h("span", { class: "turns" }, icon("caretDown", { small: true }));
     const summary = h("summary", {}, icon("keys", { small: true }), h("span", { class: "grow" }, t("keys.title")), caret);
     this.elements = {
@@ -79,6 +81,7 @@ export class Creator {
         ...notes.elements,
         form.element,
         whole.element,
+        mission.element,
         list.element,
         h("details", { class: "creator-keys disc" }, summary, h("p", { class: "small muted" }, t("keys"))),
       ),

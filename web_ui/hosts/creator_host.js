@@ -3,7 +3,7 @@
 
 import { localStore } from "../browser/local_storage.js";
 import { translator } from "../i18n/index.js";
-import { parse } from "../playground/document.js";
+import { parseDraft } from "../playground/draft_text.js";
 import { Fault } from "../playground/rules.js";
 import { Drafts } from "../playground_tab/drafts.js";
 import { CONNECTION } from "../state/index.js";
@@ -125,7 +125,7 @@ export class CreatorHost {
    */
   async openText(text, { draft, inFile = false } = {}) {
     try {
-      const playground = parse(text);
+      const playground = parseDraft(text);
       await this.open(draft === undefined ? playground : { ...playground, draft }, { inFile });
       return null;
     } catch (error) {

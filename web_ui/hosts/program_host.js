@@ -11,7 +11,7 @@ import { followLocalStore, localStore } from "../browser/local_storage.js";
 import { meetOtherTabs, openPages } from "../browser/other_tabs.js";
 import { textOf } from "../browser/text_file.js";
 import { looksLikeToolbox } from "../editor/toolbox_file.js";
-import { importerOf, LanguageChoice, TEXT } from "../program_tab/language_choice.js";
+import { importerOf, languageOf, LanguageChoice, TEXT } from "../program_tab/language_choice.js";
 import { CONNECTION } from "../state/index.js";
 import { holdsVpl } from "../vpl/holds.js";
 
@@ -146,6 +146,13 @@ export class ProgramHost {
     this.tab?.setShown(visible);
     if (visible) await this.#opened();
     this.client().refresh();
+  }
+
+  /** The program that the tab has open, with its language; null if the tab cannot be loaded. */
+  async openProgram() {
+    if (!(await this.#load()) || this.session === null) return null;
+    const { text } = this.session.workspace.current;
+    return { text, language: languageOf(text, LANGUAGES) };
   }
 
   /** Open the tab with a program. @param {string} name @param {string} text */

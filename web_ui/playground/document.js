@@ -8,7 +8,8 @@ import { check, describe, Fault } from "./rules.js";
 /** @typedef {import("./parts.js").Item} Item */
 /**
  * @typedef {Readonly<{ title: string, description: string, translations: Readonly<Record<string, any>>,
- *   items: readonly Item[], draft?: string }>} Playground   draft: the name under which this device keeps it; not in files
+ *   items: readonly Item[], draft?: string, mission?: import("./mission.js").Mission }>} Playground   draft: the name under
+ *   which this device keeps it; mission: what makes it a mission; neither is in the file of a playground
  */
 
 const { format: FORMAT, limits: LIMITS, titles: TITLES } = BUILT_IN;

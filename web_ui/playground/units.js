@@ -6,6 +6,10 @@ export const UNITS = /** @type {Record<string, { unit: string, factor: number, s
   rad: { unit: "°", factor: 180 / Math.PI, step: 15 },
   kg: { unit: "g", factor: 1000, step: 10 },
   s: { unit: "s", factor: 1, step: 0.5 },
+  "m/s": { unit: "m/s", factor: 1, step: 0.01 },
+  degrees: { unit: "°", factor: 1, step: 15 },
+  laps: { unit: "", factor: 1, step: 1 },
+  "rows, blocks or lines": { unit: "", factor: 1, step: 1 },
 });
 const PLAIN = { unit: "", factor: 1, step: 0.05 };
 /** Resolution of displayed and entered numbers. */

@@ -2,6 +2,7 @@
 // it; until the list changes again it can be brought back.
 
 import { fileNameOf } from "../playground/document.js";
+import { playgroundOfDraft } from "../playground/draft_text.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { h, lock } from "../ui/dom.js";
 import { keepFocus } from "../ui/focus.js";
@@ -20,6 +21,8 @@ export function ownPanel({ text, actions, thumbnails, creator, announce }) {
   /** @type {HTMLButtonElement[]} */ let buttons = [];
   let shown = -1;
 
+  /** @param {string} id */
+  const read = (id) => playgroundOfDraft(drafts.read(id) ?? "");
   /** @param {Draft} draft */
   const draftCard = (draft) => {
     const { id, title } = draft;
@@ -28,8 +31,8 @@ export function ownPanel({ text, actions, thumbnails, creator, announce }) {
       title,
       description: "",
       attributes: { "data-own": id },
-      sample: () => thumbnails.draw(drafts.read(id) ?? ""),
-      choose: () => void actions.loadPlayground(fileNameOf(title), new TextEncoder().encode(drafts.read(id) ?? "")),
+      sample: () => thumbnails.draw(read(id)),
+      choose: () => void actions.loadPlayground(fileNameOf(title), new TextEncoder().encode(read(id))),
       buttons: [
         {
           name: "go-on",

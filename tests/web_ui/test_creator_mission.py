@@ -1,0 +1,97 @@
+"""A mission made in the creator is one file, which the simulator reads and the creator opens again."""
+
+from __future__ import annotations
+
+import zipfile
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+from tests.web_ui.creator_support import choose_more, click, open_creator
+from tests.web_ui.page_support import MARKS
+from tests.web_ui.test_page_access import AXE, FINDINGS
+from thymio_sim_ros.missions import load_mission
+
+pytestmark = MARKS
+
+
+def choose(page, goal, field, value):
+    """Choose a value of a goal, and wait until the mission has it."""
+    page.locator(f'[data-goal="{goal}"] [data-field={field}]').select_option(value)
+
+
+def wait_for_mission(page, expression):
+    """Wait until an expression over the mission is true."""
+    page.wait_for_function(f"((mission) => {expression})(window.thymio.built().playground.mission)")
+
+
+def make(page):
+    """A mission: two goals one after the other, a reason to fail, a star, hints."""
+    page.click("[data-tool=rectangle]")
+    click(page, 0.3, 0.2)
+    page.keyboard.press("Escape")
+    page.keyboard.press("Escape")
+    page.click(".mission-form summary")
+    page.click("[data-verb=make-mission]")
+    page.click("[data-verb=add-goals]")
+    page.click("[data-verb=add-goals]")
+    choose(page, "goals[1]", "kind", "lights")
+    choose(page, "goals[1]", "color", "green")
+    page.select_option("[data-field=order]", "then")
+    page.click("[data-verb=add-never]")
+    page.fill("[data-field=within_s]", "20")
+    page.fill("#mission-story", "Drive to the square.")
+    page.fill("#mission-hints", "Turn left.\nThen stop.")
+    page.click("[data-language=vpl]")
+    wait_for_mission(page, "mission.hints.length === 2 && !mission.languages.includes('vpl')")
+
+
+def test_a_mission_is_made_saved_and_opened_again(at_rest, page, tmp_path):
+    open_creator(page, at_rest)
+    make(page)
+    page.add_script_tag(path=str(AXE))
+    assert page.evaluate(FINDINGS) == []
+    made = page.evaluate("window.thymio.built().playground.mission")
+    with page.expect_download() as saving:
+        choose_more(page, "save")
+    saved = tmp_path / saving.value.suggested_filename
+    assert saved.name == "My_playground.zip"
+    saving.value.save_as(saved)
+    with zipfile.ZipFile(saved) as archive:
+        archive.extractall(tmp_path)
+    mission = load_mission(tmp_path / "mission.json")
+    assert mission.success == {"then": ["goal_1", "goal_2"]}
+    assert mission.failure == "never_1"
+    assert [star.within_s for star in mission.stars] == [20.0]
+    assert mission.hints == ("Turn left.", "Then stop.")
+    assert mission.text_of("goal_2") == "Its light is green"
+    assert list(mission.zones) == ["rectangle_1"]
+    page.click("[data-verb=no-mission]")
+    page.wait_for_function("window.thymio.built().playground.mission === undefined")
+    page.set_input_files("#creator-file", str(saved))
+    wait_for_mission(page, "mission?.goals.length === 2")
+    opened = page.evaluate("window.thymio.built().playground.mission")
+    assert opened == made | {
+        "goals": [{**goal, "text": mission.text_of(f"goal_{index}")} for index, goal in enumerate(made["goals"], 1)],
+        "never": [{**goal, "text": mission.text_of(f"never_{index}")} for index, goal in enumerate(made["never"], 1)],
+    }
+
+
+def test_what_is_missing_is_said_and_a_form_that_cannot_have_a_mission_leaves_the_work(at_rest, page, tmp_path):
+    open_creator(page, at_rest)
+    page.click(".mission-form summary")
+    page.click("[data-verb=make-mission]")
+    playwright.expect(page.locator(".mission-form .problems")).to_have_text("Add a goal.")
+    page.click("[data-verb=add-goals]")
+    playwright.expect(page.locator(".mission-form .problems")).to_be_hidden()
+    other = tmp_path / "other.zip"
+    with zipfile.ZipFile(other, "w") as archive:
+        archive.writestr(
+            "mission.json", '{"format": 1, "title": "x", "playground": "playground.json", "success": {"not": "a"}}'
+        )
+        archive.writestr("playground.json", '{"format": 1, "title": "x", "shapes": [], "robots": []}')
+    page.set_input_files("#creator-file", str(other))
+    reason = page.locator(".creator .fault .reason")
+    playwright.expect(reason).to_contain_text("parts that this form does not have")
+    wait_for_mission(page, "mission.goals.length === 1")
