@@ -18,7 +18,7 @@ ROS_WORKER = "gw0"
 """The worker of pytest-xdist with an installed ROS 2."""
 _ROOT = Path(__file__).parent
 _REAL = (
-    "cli/test_env.py",
+    "cli/ros/test_env.py",
     "examples/test_executables.py",
     "grading/test_grade_programs.py",
     "lockstep/installed_ros",

@@ -201,7 +201,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from std_msgs.msg import String
 from thymio_sim_ros.bags import commands
-from thymio_sim_ros.cli.ros_tools import parser_of
+from thymio_sim_ros.cli.ros.tools import parser_of
 
 rclpy.init()
 node = rclpy.create_node("talker")

@@ -12,7 +12,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
-from thymio_sim_ros.cli.ros_tools import parser_of
+from thymio_sim_ros.cli.ros.tools import parser_of
 from thymio_sim_ros.ros_commands import action, interface, node, param, service, topic
 from thymio_sim_ros.ros_commands.errors import CommandError
 from thymio_sim_ros.ros_commands.member import Member

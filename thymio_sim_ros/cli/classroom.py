@@ -23,7 +23,7 @@ from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import check_files, path_argument
 from thymio_sim_ros.cli.output import print_text
 from thymio_sim_ros.cli.page_options import add_proxy_option, check_port
-from thymio_sim_ros.cli.ros_graph import add_graph_options, check_ros
+from thymio_sim_ros.cli.ros.graph_choice import add_graph_options, check_ros
 from thymio_sim_ros.cli.servers import address_argument, port_argument
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.end_signals import END_SIGNALS

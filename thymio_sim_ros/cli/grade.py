@@ -17,7 +17,7 @@ from thymio_sim_ros.batch_runs.errors import EngineError
 from thymio_sim_ros.batch_runs.failure import Failure
 from thymio_sim_ros.cli.batch import CLUSTER, Progress, add_cluster_options, check_dask
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.ros_graph import check_ros
+from thymio_sim_ros.cli.ros.graph_choice import check_ros
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.grading import assignment as assignments
 from thymio_sim_ros.grading import grader, submissions

@@ -15,20 +15,20 @@ from thymio_sim_ros.cli.errors import USAGE_ERROR, UsageError
 
 __all__ = ["main"]
 
-ROS_TOOLS = "ros_tools"
+ROS_TOOLS = "ros.tools"
 """The module of several subcommands, which gets their name."""
 COMMANDS: Mapping[str, str] = {
     "runner": "runner",
     "class": "classroom",
     "convert": "convert",
-    "doctor": "doctor",
-    "env": "env",
+    "doctor": "ros.doctor",
+    "env": "ros.env",
     "foxglove-layout": "foxglove_layout",
     "grade": "grade",
     "mission": "mission",
-    "node": "node",
+    "node": "ros.node",
     "replay": "replay",
-    "ros2": "ros2",
+    "ros2": "ros.ros2",
     "sweep": "sweep",
     **dict.fromkeys(("action", "interface", "param", "play", "record", "service", "topic"), ROS_TOOLS),
 }

@@ -26,7 +26,7 @@ from thymio_sim_ros.cli.options import (
 )
 from thymio_sim_ros.cli.output import print_text
 from thymio_sim_ros.cli.page_options import add_page_options, check_certificate, check_port, given_tokens
-from thymio_sim_ros.cli.ros_graph import add_graph_options, choose_graph, describe_graph
+from thymio_sim_ros.cli.ros.graph_choice import add_graph_options, choose_graph, describe_graph
 from thymio_sim_ros.cli.servers import Servers, select_servers
 from thymio_sim_ros.engine.replay import LoggedRun, last_run
 from thymio_sim_ros.engine.run_log import RunLogError

@@ -59,7 +59,7 @@ class Suite:
         """
         import_hook.install(is_forced=True)
         course_packages.add_to_path()
-        from thymio_sim_ros.cli.membership import connected
+        from thymio_sim_ros.cli.ros.membership import connected
 
         self.port = _free_port()
         """The port of its page."""

@@ -31,7 +31,14 @@ from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
 from thymio_sim_ros.portable_ros.messages.type_descriptions import type_hash
 from thymio_sim_ros.ros.foxglove.schemas import share_folders
 
-NOT_IN_WHEELS = {"action_tutorials_interfaces", "example_interfaces", "irobot_create_msgs", "tf2_msgs", "turtlesim"}
+NOT_IN_WHEELS = {
+    "action_tutorials_interfaces",
+    "composition_interfaces",
+    "example_interfaces",
+    "irobot_create_msgs",
+    "tf2_msgs",
+    "turtlesim",
+}
 OPTIONAL = {one for one in ("test_msgs",) if PathFinder.find_spec(one) is None}  # not what our hook serves
 PACKAGES = sorted(interface_files.PACKAGES - NOT_IN_WHEELS - OPTIONAL)
 

@@ -31,11 +31,14 @@ def get_packages_with_prefixes() -> dict[str, str]:
 
 
 def get_package_prefix(package_name: str) -> str:
-    """The folder into which a package is installed, or its source folder.
+    """The folder into which a package is installed, or else its source folder.
 
     Raises PackageNotFoundError, and ValueError for what is no name of a package.
     """
-    return str(_source(package_name) or _installed(package_name))
+    source = _source(package_name)
+    if source is not None and has_resource("packages", package_name) is False:
+        return str(source)
+    return str(_installed(package_name))
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from aseba_vm.cli.output import standard_output
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.membership import add_membership_options, membership
+from thymio_sim_ros.cli.ros.membership import add_membership_options, membership
 
 if TYPE_CHECKING:
     from thymio_sim_ros.ros.doctor import Examination, TopicUse

@@ -7,7 +7,7 @@ import importlib.util
 from collections.abc import Sequence
 
 from thymio_sim_ros.bags.arguments import add_play_arguments, add_record_arguments
-from thymio_sim_ros.cli.membership import add_membership_options, interruptible, membership
+from thymio_sim_ros.cli.ros.membership import add_membership_options, interruptible, membership
 from thymio_sim_ros.ros_commands.arguments import NOUNS, add_verbs
 
 __all__ = ["parser_of", "run"]

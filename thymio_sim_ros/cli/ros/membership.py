@@ -15,12 +15,23 @@ from typing import Any
 from thymio_sim_ros import course_packages
 from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.ros_graph import check_ros
+from thymio_sim_ros.cli.ros.graph_choice import check_ros
 from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.names.ports import FOXGLOVE_PORT
 from thymio_sim_ros.portable_ros import import_hook
 
-__all__ = ["Membership", "add_membership_options", "add_server_options", "connected", "interruptible", "membership"]
+__all__ = [
+    "CONNECT_VARIABLE",
+    "Membership",
+    "add_membership_options",
+    "add_server_options",
+    "connected",
+    "interruptible",
+    "membership",
+]
+
+CONNECT_VARIABLE = "THYMIO_SIM_CONNECT"
+"""The address of the server where no option names it."""
 
 _KINDS = {True: "the embedded graph", False: "the ROS 2 graph", None: "the graph"}
 _SUITE_HERE = f"ws://127.0.0.1:{FOXGLOVE_PORT}"
@@ -58,10 +69,10 @@ def _add_connect(to: argparse._ActionsContainer, default: str | None = None) -> 
     to.add_argument(
         "--connect",
         type=_url_argument,
-        default=default,
+        default=os.environ.get(CONNECT_VARIABLE, default),
         metavar="URL",
         help="address of the server: the one that `thymio-sim` prints for Foxglove"
-        f" (default: {default or 'the suite of this computer'})",
+        f" (default: variable {CONNECT_VARIABLE}, or {default or 'the suite of this computer'})",
     )
 
 

@@ -8,7 +8,7 @@ from typing import NoReturn
 import pytest
 
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.ros_graph import choose_graph, describe_graph
+from thymio_sim_ros.cli.ros.graph_choice import choose_graph, describe_graph
 from thymio_sim_ros.portable_ros import import_hook
 
 

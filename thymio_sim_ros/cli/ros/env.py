@@ -12,10 +12,10 @@ from pathlib import Path
 from aseba_vm.cli.output import standard_output
 from thymio_sim_ros import course_packages
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.ros_graph import check_ros
+from thymio_sim_ros.cli.ros.graph_choice import check_ros
 from thymio_sim_ros.course_packages import field_checks
 
-__all__ = ["run"]
+__all__ = ["run", "variables"]
 
 PATH = "PYTHONPATH"
 
@@ -67,7 +67,7 @@ def run(argv: Sequence[str]) -> int:
         raise UsageError("--package: found no --stubs, expected it too")
     check_ros()
     with standard_output():
-        sys.stdout.write("".join(f"export {name}={shlex.quote(value)}\n" for name, value in _variables().items()))
+        sys.stdout.write("".join(f"export {name}={shlex.quote(value)}\n" for name, value in variables().items()))
     return 0
 
 
@@ -89,7 +89,8 @@ def _write_stubs(folder: Path, packages: Sequence[str]) -> None:
         print(_WRITTEN.format(folder=folder))
 
 
-def _variables() -> Mapping[str, str]:
+def variables() -> Mapping[str, str]:
+    """The variables that a terminal needs and does not have, with their values; ROS 2 has to be installed."""
     from thymio_sim_ros.ros.compat import dds_profile
 
     values = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}

@@ -11,7 +11,8 @@ import pytest
 from tests.patience import PATIENCE_S
 from tests.portable_ros.rosbridge.socket_server import SocketServer
 from tests.processes import free_port
-from thymio_sim_ros.cli import main, node
+from thymio_sim_ros.cli import main
+from thymio_sim_ros.cli.ros import node
 
 
 @pytest.mark.parametrize(

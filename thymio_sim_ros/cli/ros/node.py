@@ -8,9 +8,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from thymio_sim_ros import course_packages
-from thymio_sim_ros.cli import ros_tools
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.membership import add_server_options, connected, interruptible
+from thymio_sim_ros.cli.ros import tools
+from thymio_sim_ros.cli.ros.membership import add_server_options, connected, interruptible
 from thymio_sim_ros.course_packages import field_checks
 from thymio_sim_ros.portable_ros import import_hook
 from thymio_sim_ros.ros_commands.arguments import NOUNS
@@ -39,7 +39,7 @@ server. Without one, the command waits for it; a lost connection is made again. 
 def run(argv: Sequence[str]) -> int:
     """Run the program; return the exit code. Raises UsageError for a program that there is not, and a wrong server."""
     if argv and argv[0] in _VERBS:
-        return ros_tools.run([_NOUN, *argv])
+        return tools.run([_NOUN, *argv])
     own, arguments = _split(argv)
     options = _parser().parse_args(own)
     target = options.module or options.file

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -119,42 +118,3 @@ def test_wrong_words_are_refused_with_the_verbs(capsys: pytest.CaptureFixture[st
     errors = capsys.readouterr().err
     assert "invalid choice: 'lst'" in errors
     assert "found 0, expected a number above 0" in errors
-
-
-FAKE_TOOLS = {
-    "ros2cli/__init__.py": "",
-    "ros2cli/cli.py": """\
-import sys
-from ros2cli.node import strategy
-
-def main():
-    import rclpy
-    rclpy.init()
-    node = rclpy.create_node("_tool")
-    print(sys.argv, strategy.is_daemon_running(None), "simulator" in node.get_node_names())
-    rclpy.shutdown()
-    return "said" if sys.argv[-1] == "fail" else 0
-""",
-    "ros2cli/node/__init__.py": "",
-    "ros2cli/node/strategy.py": "is_daemon_running = spawn_daemon = None\n",
-}
-
-
-@pytest.mark.parametrize(("word", "code", "errors"), [("list", 0, ""), ("fail", 1, "said\n")])
-def test_the_real_tools_run_on_the_graph_without_a_daemon(
-    port: int, word: str, code: int, errors: str, tmp_path: Path
-) -> None:
-    for name, text in FAKE_TOOLS.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    command = [PYTHON, "-m", "thymio_sim_ros", "ros2", "--connect", f"ws://127.0.0.1:{port}", "node", word]
-    places = os.pathsep.join([str(tmp_path), str(Path(__file__).parents[2])])
-    done = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=PATIENCE_S,
-        env={**os.environ, "PYTHONPATH": places},
-    )
-    assert (done.returncode, done.stdout, done.stderr) == (code, f"['ros2', 'node', '{word}'] False True\n", errors)

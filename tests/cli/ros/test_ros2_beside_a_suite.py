@@ -1,0 +1,190 @@
+"""`thymio-sim ros2` as a process beside a suite on the embedded graph, with stand-ins of the tools.
+
+They use what the tools use: the graph, the index of packages, and `lib/PACKAGE/NAME`. The tools themselves are tried in
+tests/platforms/test_student_nodes.py, where they are installed.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.cli.ros.test_workspace import SETUP, make_package
+from tests.patience import PATIENCE_S, until
+from tests.processes import PYTHON, Process, free_port, wait_for_port
+from tests.syntax import ROOT
+from thymio_sim_ros.portable_ros.rosbridge.server_kind import is_embedded
+
+pytestmark = pytest.mark.process
+
+FAKE_TOOLS = {
+    "ros2cli/__init__.py": "",
+    "ros2cli/cli.py": """\
+import argparse, sys
+
+def main(*, extension=None):
+    parser = argparse.ArgumentParser()
+    extension.add_arguments(parser, "ros2")
+    return extension.main(parser=parser, args=parser.parse_args())
+""",
+    "ros2cli/command.py": """\
+import argparse
+import subprocess
+
+def add_subparsers_on_demand(parser, cli_name, dest, group_name, hide_extensions=None, required=True):
+    parser.add_argument("words", nargs=argparse.REMAINDER)
+    parser.set_defaults(**{dest: Command()})
+
+class Command:
+    def main(self, *, parser, args):
+        command, *words = args.words
+        return {"node": self.node, "run": self.run, "launch": self.launch}[command](args, *words)
+
+    def node(self, args, word):
+        import rclpy
+        rclpy.init()
+        node = rclpy.create_node("_tool")
+        print(args.no_daemon, "simulator" in node.get_node_names())
+        rclpy.shutdown()
+        return "said" if word == "fail" else 0
+
+    def run(self, args, package, name, *words):
+        from ament_index_python.packages import get_package_prefix
+        return subprocess.run([f"{get_package_prefix(package)}/lib/{package}/{name}", *words]).returncode
+
+    def launch(self, args, *words):
+        return subprocess.run(["ros2", "node", "list"]).returncode or 1
+""",
+    "ros2launch/__init__.py": "",
+    "ros2node/__init__.py": "",
+    "ros2run/__init__.py": "",
+}
+TALKER = """\
+import sys
+import rclpy
+from ament_index_python.packages import get_package_share_directory
+from lesson_messages.msg import Word
+from rclpy.node import Node
+
+def main():
+    rclpy.init()
+    node = Node("talker")
+    node.declare_parameter("word", "")
+    while "simulator" not in node.get_node_names():
+        rclpy.spin_once(node, timeout_sec=0.1)
+    message = Word(text=node.get_parameter("word").value)
+    print(node.get_fully_qualified_name(), message.text, get_package_share_directory("lesson"))
+    rclpy.shutdown()
+    return 3
+"""
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a suite with a robot without a program."""
+    port = free_port()
+    words = ("--portable", "--no-web", "--playground", "line", "--program", "none", "--foxglove-port", str(port))
+    suite = Process(tmp_path_factory.mktemp("suite"), "thymio_sim_ros.cli.main", *words)
+    wait_for_port(port)
+    made = f"ws://127.0.0.1:{port}"
+    until(lambda: is_embedded(made) is not None, lambda: suite.output)
+    yield made
+    suite.end()
+
+
+@pytest.fixture(scope="module")
+def tools(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the stand-ins."""
+    folder = tmp_path_factory.mktemp("tools")
+    for name, text in FAKE_TOOLS.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """A workspace whose folder has a space: two packages in Python, and one that needs CMake."""
+    folder = tmp_path / "my workspace"
+    lesson = make_package(folder / "src" / "lesson", setup=SETUP % '["talker = lesson.talker:main"]')
+    (lesson / "lesson").mkdir()
+    (lesson / "lesson" / "__init__.py").touch()
+    (lesson / "lesson" / "talker.py").write_text(TALKER, encoding="utf-8")
+    messages = make_package(folder / "src" / "course" / "lesson_messages", cmake="rosidl_generate_interfaces()")
+    (messages / "msg").mkdir()
+    (messages / "msg" / "Word.msg").write_text("string text\n", encoding="utf-8")
+    make_package(folder / "src" / "fast", cmake="add_executable(fast fast.cpp)")
+    return folder
+
+
+@pytest.fixture
+def ros2(url: str, tools: Path, workspace: Path):
+    """Run `thymio-sim ros2` in the workspace to its end."""
+
+    def run(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [PYTHON, "-m", "thymio_sim_ros", "ros2", *words]
+        variables = {"PYTHONPATH": os.pathsep.join((str(tools), str(ROOT))), "THYMIO_SIM_CONNECT": url}
+        return subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=PATIENCE_S,
+            cwd=workspace,
+            env={**os.environ, **variables},
+        )
+
+    return run
+
+
+@pytest.mark.parametrize(("word", "code", "errors"), [("list", 0, ""), ("fail", 1, "said\n")])
+def test_the_tools_run_on_the_graph_without_a_daemon(ros2, word: str, code: int, errors: str) -> None:
+    done = ros2("node", word)
+    assert (done.returncode, done.stdout, done.stderr) == (code, "True True\n", errors)
+
+
+def test_run_starts_a_program_of_the_workspace_as_a_member_of_the_graph(ros2, workspace: Path) -> None:
+    done = ros2("run", "lesson", "talker", "--ros-args", "-p", "word:=hello", "-r", "__ns:=/lab")
+    assert done.stderr == "a line of setup.py\n"
+    assert done.stdout == f"/lab/talker hello {workspace / 'src' / 'lesson'}\n"
+    assert done.returncode == 3
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("lesson talkr", "src/lesson: found no program talkr, expected one of talker"),
+        (
+            "fast fast",
+            "src/fast: found no program fast, expected a program in Python, but it has none; programs in C++ need an"
+            " installed ROS 2",
+        ),
+    ],
+)
+def test_a_program_that_there_is_not_is_refused_with_those_that_there_are(
+    ros2, workspace: Path, words: str, reason: str
+) -> None:
+    done = ros2("run", *words.split())
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1] == f"thymio-sim: ros2 run: {workspace}/{reason}"
+
+
+def test_the_examples_are_programs_and_those_of_the_suite_say_that_it_is_there(ros2) -> None:
+    done = ros2("run", "thymio_sim_ros", "simulator")
+    assert done.returncode == 1
+    assert "thymio-sim: simulator runs on an installed ROS 2 only" in done.stderr
+    done = ros2("run", "thymio_sim_ros", "line_follower", "--ros-args", "-p", "speed:=wrong")
+    assert "speed" in done.stderr
+    assert done.returncode == 1
+
+
+def test_launched_processes_find_ros2_and_a_failed_launch_names_packages_that_need_a_build(ros2) -> None:
+    done = ros2("launch", "lesson", "some.launch.py")
+    assert (done.returncode, done.stdout) == (1, "True True\n")
+    assert done.stderr.splitlines()[-1] == (
+        "thymio-sim ros2 launch: without ROS 2, programs run in Python only; there are others in fast"
+    )
