@@ -29,7 +29,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import (
     announce,
     run_main,
 )
-from thymio_sim_ros.ros.rclpy_ext.peers import PeerContext
+from thymio_sim_ros.ros.rclpy_ext.peers import PUBLISHING_PEER, SUBSCRIBING_PEER, PeerContext
 from thymio_sim_ros.ros.simulator.node import Simulator
 from thymio_sim_ros.suite_config import SuiteConfig
 from thymio_sim_ros.web.thread import ServerThread
@@ -53,7 +53,7 @@ class SuitePeers:
 
     def of_bridge(self) -> tuple[Node, Node]:
         """Create the nodes that subscribe and publish for the clients of the bridge."""
-        return self._receiving.node("_foxglove_subscriber"), self._sending.node("_foxglove_publisher")
+        return self._receiving.node(SUBSCRIBING_PEER), self._sending.node(PUBLISHING_PEER)
 
     def close(self) -> None:
         """Destroy all peers."""

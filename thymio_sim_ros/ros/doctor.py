@@ -26,6 +26,7 @@ from std_msgs.msg import String
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 from thymio_sim_ros.ros.interface import qos
+from thymio_sim_ros.ros.rclpy_ext.peers import PUBLISHING_PEER, SUBSCRIBING_PEER
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["Examination", "NothingFoundError", "TopicUse", "examine"]
 
 NAME = "thymio_doctor"
-SUITE = ("simulator", "aseba_runtime", "foxglove_bridge", "web_ui")
+SUITE = ("simulator", "aseba_runtime", "foxglove_bridge", "web_ui", SUBSCRIBING_PEER, PUBLISHING_PEER)
 """Names of the nodes of a suite."""
 FIND_S = 8.0
 """Longest wait for a simulator: discovery, and the next `/diagnostics`."""

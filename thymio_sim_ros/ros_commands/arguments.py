@@ -40,9 +40,7 @@ def _topic() -> Iterator[tuple[str, str, Add]]:
         parser.add_argument("-w", "--window", type=_count, default=10_000, help="messages that are considered (10000)")
 
     def pub(parser: argparse.ArgumentParser) -> None:
-        parser.add_argument("topic")
-        parser.add_argument("type", help="such as geometry_msgs/msg/Twist")
-        _values(parser)
+        _message(parser, "topic", "geometry_msgs/msg/Twist")
         parser.add_argument("-r", "--rate", type=_positive, default=1.0, metavar="HZ", help="messages per second (1)")
         times = parser.add_mutually_exclusive_group()
         times.add_argument("-1", "--once", action="store_const", const=1, dest="times", help="publish one message")
@@ -66,9 +64,7 @@ def _node() -> Iterator[tuple[str, str, Add]]:
 
 def _service() -> Iterator[tuple[str, str, Add]]:
     def call(parser: argparse.ArgumentParser) -> None:
-        parser.add_argument("service")
-        parser.add_argument("type", help="such as std_srvs/srv/SetBool")
-        _values(parser)
+        _message(parser, "service", "std_srvs/srv/SetBool")
 
     yield "list", "List services", lambda parser: _list_options(parser, "services")
     yield "type", "Print the type of a service", lambda parser: _name(parser, "service")
@@ -95,9 +91,7 @@ def _param() -> Iterator[tuple[str, str, Add]]:
 
 def _action() -> Iterator[tuple[str, str, Add]]:
     def send_goal(parser: argparse.ArgumentParser) -> None:
-        parser.add_argument("action")
-        parser.add_argument("type", help="such as example_interfaces/action/Fibonacci")
-        _values(parser)
+        _message(parser, "action", "example_interfaces/action/Fibonacci")
         parser.add_argument("-f", "--feedback", action="store_true", help="print feedback, too")
 
     yield "list", "List actions", lambda parser: _list_options(parser, None)
@@ -121,7 +115,10 @@ def _list_options(parser: argparse.ArgumentParser, hidden: str | None) -> None:
         parser.add_argument(name, action="store_true", dest="include_hidden", help=f"also list hidden {hidden}")
 
 
-def _values(parser: argparse.ArgumentParser) -> None:
+def _message(parser: argparse.ArgumentParser, of: str, example: str) -> None:
+    """Add a name, the type there, and the values of a message; `example` is a type."""
+    parser.add_argument(of)
+    parser.add_argument("type", help=f"such as {example}")
     parser.add_argument("values", nargs="?", default="{}", help="fields in YAML, such as '{linear: {x: 0.1}}'")
 
 

@@ -10,33 +10,11 @@ from pathlib import Path
 import pytest
 
 from tests.patience import PROGRAM_S
+from tests.testing.ros.driver import NODE, TEST
 
 pytestmark = pytest.mark.process
 
 ROOT = Path(__file__).parents[3]
-NODE = """
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-
-class Driver(Node):
-    def __init__(self):
-        super().__init__("driver")
-        self.out = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_timer(0.1, self.drive)
-
-    def drive(self):
-        command = Twist()
-        command.linear.x = 0.1
-        self.out.publish(command)
-"""
-TEST = """
-from geometry_msgs.msg import Twist
-
-def test_it_drives(ros, simulation):
-    sim = simulation()
-    ros.start("driver.py")
-    sim.until(lambda: sim.thymio.pose.x_m > 0.02, seconds=1)
-"""
 RUN = """
 import sys
 import pytest

@@ -27,6 +27,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from thymio_sim_ros.lockstep.matching import fit
 from thymio_sim_ros.names.type_names import type_name
+from thymio_sim_ros.ros.rclpy_ext.peers import SUBSCRIBING_PEER
 
 __all__ = [
     "CLIENT",
@@ -51,7 +52,7 @@ SIMILAR = 0.8
 MAX_NAMES = 3
 """Largest number of names that a warning proposes."""
 
-_OURS = ("simulator", "aseba_runtime", "foxglove_bridge", "_foxglove_subscriber")
+_OURS = ("simulator", "aseba_runtime", "foxglove_bridge", SUBSCRIBING_PEER)
 """Nodes of this package with many endpoints, whose names come from the graph or fit: they are skipped, since queries
 cost time."""
 _OF_EVERY_NODE = frozenset({

@@ -23,7 +23,10 @@ from rosgraph_msgs.msg import Clock
 
 from thymio_sim_ros.ros.rclpy_ext.callback_groups import forget_destroyed
 
-__all__ = ["HasPeers", "PeerContext", "follow_clock"]
+__all__ = ["PUBLISHING_PEER", "SUBSCRIBING_PEER", "HasPeers", "PeerContext", "follow_clock"]
+
+SUBSCRIBING_PEER, PUBLISHING_PEER = "_foxglove_subscriber", "_foxglove_publisher"
+"""The peers of the bridge in a suite."""
 
 _CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 """QoS of the time source of rclpy."""
