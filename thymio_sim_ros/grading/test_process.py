@@ -44,7 +44,7 @@ _ENDS: Mapping[type[BaseException], str] = {
 def main(argv: Sequence[str]) -> None:
     """Run the tests; ends the process."""
     if sys.platform == "linux":
-        from thymio_sim_ros.grading.sandbox import syscalls
+        from thymio_sim_ros.grading.sandbox.linux import syscalls
 
         syscalls.hide_memory()  # from programs that the tests start
     folder, *tests, report, control = argv

@@ -22,7 +22,7 @@ def main() -> int:
     """Run the job of standard input; return the exit code."""
     job: Job = pickle.load(sys.stdin.buffer)  # of the grader
     if job.level != "process":
-        from thymio_sim_ros.grading.sandbox import linux_launcher
+        from thymio_sim_ros.grading.sandbox.linux import launcher as linux_launcher
 
         return linux_launcher.run(job)
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(1))  # ends the processes of the submission, too

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 
 from thymio_sim_ros.grading.assignment import Limits
-from thymio_sim_ros.grading.sandbox import landlock, seccomp, syscalls
+from thymio_sim_ros.grading.sandbox.linux import landlock, seccomp, syscalls
 from thymio_sim_ros.grading.sandbox.resource_limits import limit_resources
 
 __all__ = ["Confinement", "confine"]

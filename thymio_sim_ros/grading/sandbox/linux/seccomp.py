@@ -11,7 +11,7 @@ import errno
 import platform
 import struct
 
-from thymio_sim_ros.grading.sandbox import syscalls
+from thymio_sim_ros.grading.sandbox.linux import syscalls
 
 __all__ = ["restrict"]
 

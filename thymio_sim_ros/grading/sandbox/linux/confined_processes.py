@@ -9,9 +9,9 @@ import subprocess
 from functools import partial
 from typing import Any
 
-from thymio_sim_ros.grading.sandbox.confinement import Confinement, confine
+from thymio_sim_ros.grading.sandbox.linux.confinement import Confinement, confine
+from thymio_sim_ros.grading.sandbox.linux.usage import descendants, memory_used, used
 from thymio_sim_ros.grading.sandbox.processes import Usage
-from thymio_sim_ros.grading.sandbox.usage import descendants, memory_used, used
 
 __all__ = ["ConfinedProcesses"]
 

@@ -7,10 +7,10 @@ import tempfile
 from functools import partial
 from pathlib import Path
 
-from thymio_sim_ros.grading.sandbox import namespaces, syscalls
-from thymio_sim_ros.grading.sandbox.confinement import Confinement
 from thymio_sim_ros.grading.sandbox.job import Job
-from thymio_sim_ros.grading.sandbox.linux_place import LinuxPlace
+from thymio_sim_ros.grading.sandbox.linux import namespaces, syscalls
+from thymio_sim_ros.grading.sandbox.linux.confinement import Confinement
+from thymio_sim_ros.grading.sandbox.linux.place import LinuxPlace
 from thymio_sim_ros.grading.sandbox.readable import PACKAGE_FOLDER, UNPRIVILEGED_ID, readable_paths
 from thymio_sim_ros.grading.sandbox.supervisor import supervise
 

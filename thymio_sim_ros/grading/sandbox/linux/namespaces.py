@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from thymio_sim_ros.grading.assignment import MAX_FILES
-from thymio_sim_ros.grading.sandbox import syscalls
+from thymio_sim_ros.grading.sandbox.linux import syscalls
 from thymio_sim_ros.grading.sandbox.readable import DEVICES, readable_paths
 
 __all__ = ["FOLDER", "bind_read_only", "run_inside", "start_loopback"]

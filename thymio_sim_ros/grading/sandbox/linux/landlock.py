@@ -7,7 +7,7 @@ import os
 import stat
 from collections.abc import Sequence
 
-from thymio_sim_ros.grading.sandbox import syscalls
+from thymio_sim_ros.grading.sandbox.linux import syscalls
 from thymio_sim_ros.grading.sandbox.readable import DEVICES
 
 __all__ = ["restrict", "version"]

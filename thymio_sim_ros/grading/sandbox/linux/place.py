@@ -9,9 +9,9 @@ import signal
 from collections.abc import Mapping
 from pathlib import Path
 
-from thymio_sim_ros.grading.sandbox import namespaces, syscalls
-from thymio_sim_ros.grading.sandbox.confined_processes import ConfinedProcesses
-from thymio_sim_ros.grading.sandbox.confinement import Confinement, confine
+from thymio_sim_ros.grading.sandbox.linux import namespaces, syscalls
+from thymio_sim_ros.grading.sandbox.linux.confined_processes import ConfinedProcesses
+from thymio_sim_ros.grading.sandbox.linux.confinement import Confinement, confine
 from thymio_sim_ros.grading.sandbox.place import FOLDERS, empty, remove, write_files
 from thymio_sim_ros.grading.sandbox.readable import readable_paths
 from thymio_sim_ros.grading.sandbox.report_protocol import ForgedError
