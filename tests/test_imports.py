@@ -63,35 +63,35 @@ RULES = {
     # world and devices: no ROS, no network, no clock on the wall
     f"{OURS}.engine": Rule(_names("aseba_vm", "device", "engine", "sim"), never=NO_WALL_CLOCK),
     f"{OURS}.files": Rule(_names("aseba_vm", "device", "files", "sim")),
-    f"{OURS}.names": Rule(_names("bridge.access", "names")),
-    f"{OURS}.bridge": Rule(_names("bridge"), frozenset({"aiohttp", "foxglove_websocket", "websockets"})),
+    f"{OURS}.access": Rule(_names("access"), frozenset({"aiohttp"})),  # for a type
+    f"{OURS}.names": Rule(_names("access", "names")),
+    f"{OURS}.bridge": Rule(_names("access", "bridge"), frozenset({"aiohttp", "foxglove_websocket", "websockets"})),
     f"{OURS}.bridge.rosbridge": Rule(_names("bridge"), frozenset({"cbor2"}), NO_WALL_CLOCK),
     f"{OURS}.web": Rule(
-        _names("web", "bridge", "files.playground_index", "files.resources", "sim"), frozenset({"aiohttp"})
+        _names("access", "web", "bridge", "files.playground_index", "files.resources", "sim"), frozenset({"aiohttp"})
     ),
     f"{OURS}.network": Rule(
-        _names("aseba_vm", "bridge", "device.programs", "names.addresses", "network", "web"),
+        _names("access", "aseba_vm", "bridge", "device.programs", "names.addresses", "network", "web"),
         frozenset({"aiohttp", "serial", "zeroconf"}),
     ),
     f"{OURS}.network.http": Rule(
-        _names(
-            "aseba_vm", "bridge.access", "bridge.origin_policy", "bridge.protocol", "device.programs", "network.http"
-        )
-        | _names("files.block_files", "web.hosts"),
+        _names("access", "aseba_vm", "device.programs", "files.block_files", "network.http"),
         never=NO_WALL_CLOCK,
     ),
-    f"{OURS}.network.http.server": Rule(_names("aseba_vm", "bridge", "network", "web"), frozenset({"aiohttp"})),
+    f"{OURS}.network.http.server": Rule(
+        _names("access", "aseba_vm", "bridge", "network", "web"), frozenset({"aiohttp"})
+    ),
     f"{OURS}.network.tdm.protocol": Rule(_names("network.tdm.protocol"), frozenset({"flatbuffers"}), NO_WALL_CLOCK),
     f"{OURS}.network.tdm": Rule(
         _names("aseba_vm", "device.programs", "network.tdm"), frozenset({"flatbuffers"}), NO_WALL_CLOCK
     ),
     f"{OURS}.classroom": Rule(
-        _names("aseba_vm", "bridge", "classroom", "files", "names.addresses", "sim", "web.hosts"),
+        _names("access", "aseba_vm", "bridge", "classroom", "files", "names.addresses", "sim"),
         frozenset({"segno", "websockets"}),
     ),
-    f"{OURS}.classroom.router": Rule(_names("bridge", "classroom", "web"), frozenset({"aiohttp"})),
+    f"{OURS}.classroom.router": Rule(_names("access", "classroom", "web"), frozenset({"aiohttp"})),
     f"{OURS}.classroom.server": Rule(_names("bridge", "classroom", "web"), frozenset({"aiohttp"})),
-    f"{OURS}.classroom.suite_proxy": Rule(_names("bridge", "web"), frozenset({"aiohttp", "multidict", "yarl"})),
+    f"{OURS}.classroom.suite_proxy": Rule(_names("access", "web"), frozenset({"aiohttp", "multidict", "yarl"})),
     f"{OURS}.studio_layout": Rule(_names("studio_layout"), never=NO_WALL_CLOCK),
     f"{OURS}.ros": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS),
     f"{OURS}.ros.foxglove.rosbridge.values": Rule(ALL_OF_OURS - {f"{OURS}.cli"}, ROS | {"cbor2", "numpy"}),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.network.settings import NetworkSettings

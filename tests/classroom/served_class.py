@@ -11,8 +11,8 @@ from pathlib import Path
 from aiohttp import web
 
 from tests.classroom.test_requests import OPTIONS
+from thymio_sim_ros.access.visitor import TrustedProxies
 from thymio_sim_ros.bridge.listening import listen
-from thymio_sim_ros.bridge.visitor import TrustedProxies
 from thymio_sim_ros.classroom import server
 from thymio_sim_ros.classroom.address import ClassAddress
 from thymio_sim_ros.classroom.classroom import Classroom

@@ -11,9 +11,10 @@ from typing import Any
 
 import pytest
 
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.folder import ClassFolder, Work
-from thymio_sim_ros.classroom.requests import Answer, RefusalError, answer
+from thymio_sim_ros.classroom.requests import Answer, answer
 from thymio_sim_ros.classroom.suite_process import SuiteOptions
 
 OPTIONS = SuiteOptions("desk", "welcome")
@@ -123,6 +124,6 @@ def test_plans_are_those_of_pupils(teacher: Teacher) -> None:
     ],
 )
 def test_wrong_requests_are_refused(teacher: Teacher, method: str, name: str, fields: Any, status: int) -> None:
-    with pytest.raises(RefusalError) as raised:
+    with pytest.raises(RefusedError) as raised:
         teacher.ask((method, name, fields))
     assert raised.value.status == status

@@ -13,7 +13,7 @@ import pytest
 from tests.bridge.peers import run
 from tests.classroom.served_class import FakeSuite, ServedClass, fake_suite, served
 from tests.patience import PATIENCE_S
-from thymio_sim_ros.bridge import access
+from thymio_sim_ros.access import attempts
 
 pytestmark = pytest.mark.process
 
@@ -228,8 +228,8 @@ def test_a_page_that_does_not_read_stops_its_suite_and_no_other_page(tmp_path: P
 
 
 def test_the_names_need_the_code_of_the_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(access, "_PER_S", 1e-9)  # the time that passes gives no attempts back
-    monkeypatch.setattr(access, "_MAX_WAIT_S", 0.0)
+    monkeypatch.setattr(attempts, "_PER_S", 1e-9)  # the time that passes gives no attempts back
+    monkeypatch.setattr(attempts, "_MAX_WAIT_S", 0.0)
 
     async def scenario(group: ServedClass, _suite: FakeSuite, client: aiohttp.ClientSession) -> None:
         async def ask(code: str, address: str) -> tuple[int, str]:
@@ -241,7 +241,7 @@ def test_the_names_need_the_code_of_the_room(tmp_path: Path, monkeypatch: pytest
         status, text = await ask(code, "192.0.2.1")
         assert status == 200
         assert f'"name": "Ada", "link": "p/ada/#token={ada.token}"' in text
-        assert {(await ask("wrong1", "192.0.2.7"))[0] for _ in range(access._BURST)} == {401}
+        assert {(await ask("wrong1", "192.0.2.7"))[0] for _ in range(attempts._BURST)} == {401}
         assert (await ask("wrong1", "192.0.2.7"))[0] == 429
         assert (await ask("wrong1", "192.0.2.8"))[0] == 401  # another visitor of the same proxy
         assert (await ask(code, "192.0.2.1"))[0] == 200

@@ -12,7 +12,7 @@ import pytest
 from tests.bridge.peers import run
 from tests.classroom.served_class import served
 from tests.patience import PATIENCE_S
-from thymio_sim_ros.bridge import access
+from thymio_sim_ros.access import attempts
 from thymio_sim_ros.bridge.connections import MIN_WAIT_S, Phase
 from thymio_sim_ros.classroom import server
 from thymio_sim_ros.classroom.requests import MAX_BODY
@@ -35,13 +35,14 @@ async def ask(port: int, name: str, token: str, body: bytes = b"") -> tuple[int,
 
 
 def test_who_tries_many_tokens_is_told_to_wait(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(access, "_PER_S", 1e-9)  # the time that passes gives no attempts back
-    monkeypatch.setattr(access, "_MAX_WAIT_S", 0.0)
+    monkeypatch.setattr(attempts, "_PER_S", 1e-9)  # the time that passes gives no attempts back
+    monkeypatch.setattr(attempts, "_MAX_WAIT_S", 0.0)
 
     async def answers() -> list[tuple[int, str]]:
         async with served(tmp_path, teacher_token=TOKEN) as group:
             found = [
-                await ask(group.port, "teacher/class/message", f"wrong{number}") for number in range(access._BURST + 1)
+                await ask(group.port, "teacher/class/message", f"wrong{number}")
+                for number in range(attempts._BURST + 1)
             ]
             assert (await ask(group.port, "", ""))[0] == 405  # the page itself needs no token
             return found

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import pytest
 
 from tests.processes import free_port
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.servers import Servers, add_server_options, select_servers
 from thymio_sim_ros.network.settings import OFF, TDM

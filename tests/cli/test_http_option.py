@@ -7,7 +7,7 @@ import socket
 
 import pytest
 
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.servers import add_server_options, select_servers
 from thymio_sim_ros.network.settings import HTTP, OFF

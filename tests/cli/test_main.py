@@ -17,7 +17,7 @@ import pytest
 from tests import disk
 from tests.patience import PATIENCE_S, until
 from tests.processes import free_port
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
+from thymio_sim_ros.access.tokens import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.cli import main, page_options, suite
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.engine import run_log

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
+from thymio_sim_ros.access.tokens import TOKEN_VARIABLE
 from thymio_sim_ros.cli import suite
 from thymio_sim_ros.notebook.launcher import launcher
 

@@ -15,8 +15,8 @@ from websockets.sync.client import connect
 from tests.bridge.certificates import make_certificate, trusting
 from tests.patience import PATIENCE_S
 from tests.processes import free_port
+from thymio_sim_ros.access.tokens import TOKEN_VARIABLE
 from thymio_sim_ros.bridge import SUBPROTOCOLS, Tokens
-from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
 from thymio_sim_ros.device.options import DeviceOptions
 from thymio_sim_ros.network.settings import HTTP, OFF, TDM, TDM_PATH, NetworkSettings
 from thymio_sim_ros.network.tdm.protocol.codec import decode, encode

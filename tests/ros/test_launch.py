@@ -19,7 +19,7 @@ from tests.patience import PATIENCE_S
 pytest.importorskip("rclpy")
 
 from tests.processes import Process, free_port, wait_for_port
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE
+from thymio_sim_ros.access.tokens import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE
 from thymio_sim_ros.device.event_queue import POLICIES
 from thymio_sim_ros.device.layout import LAYOUTS
 from thymio_sim_ros.ros.rclpy_ext import parameters as params

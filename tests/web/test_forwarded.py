@@ -13,9 +13,10 @@ from websockets.sync.client import connect
 
 from tests.patience import PATIENCE_S
 from tests.web.test_thread import Sink
-from thymio_sim_ros.bridge import SUBPROTOCOLS, BridgeServer, ServerInfo, ServerSettings, Tokens, access
+from thymio_sim_ros.access import attempts
+from thymio_sim_ros.access.visitor import TrustedProxies
+from thymio_sim_ros.bridge import SUBPROTOCOLS, BridgeServer, ServerInfo, ServerSettings, Tokens
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
-from thymio_sim_ros.bridge.visitor import TrustedProxies
 from thymio_sim_ros.web import Content, ServerThread, Settings
 
 pytestmark = pytest.mark.process
@@ -52,11 +53,11 @@ def status(port: int, token: str, headers: dict[str, str]) -> int:
 def test_tries_are_counted_by_visitor_and_a_claim_of_another_address_does_not_help(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, proxies: tuple[str, ...], second_visitor: int
 ) -> None:
-    monkeypatch.setattr(access, "_PER_S", 1e-9)  # the time that passes gives no attempts back
-    monkeypatch.setattr(access, "_MAX_WAIT_S", 0.0)
+    monkeypatch.setattr(attempts, "_PER_S", 1e-9)  # the time that passes gives no attempts back
+    monkeypatch.setattr(attempts, "_MAX_WAIT_S", 0.0)
     with served(tmp_path, Tokens(TOKEN), *proxies) as port:
         first = {"X-Forwarded-For": "192.0.2.7"}
-        assert {status(port, f"wrong{number}", first) for number in range(access._BURST)} == {401}
+        assert {status(port, f"wrong{number}", first) for number in range(attempts._BURST)} == {401}
         assert status(port, "wrong", first) == 429
         assert status(port, "wrong", {"X-Forwarded-For": "192.0.2.8"}) == second_visitor
         assert status(port, "wrong", {"X-Forwarded-For": "192.0.2.7, 127.0.0.1"}) == 429

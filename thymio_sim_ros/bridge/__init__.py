@@ -6,8 +6,7 @@
                                    events to the data source and commands from it
     server                         clients around the switchboard, without sockets; settings has their limits
     websocket                      one client on a WebSocket of aiohttp; client_send_queue: messages for it
-    handshake                      who may connect, by access (tokens) and origin_policy (web pages)
-    visitor                        who has sent a request, behind proxies that are trusted
+    handshake                      sub-protocols; `access` decides who may connect
     connections, throttle          limits of connections, and of the time of busy clients
     listening                      listening sockets of all servers
 
@@ -16,8 +15,8 @@ docs/spec/foxglove.md section 1 explains why this is not one of the vendor's pac
 
 from __future__ import annotations
 
-from thymio_sim_ros.bridge.access import Tokens
-from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS, Capability, Role
+from thymio_sim_ros.access import Role, Tokens
+from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS, Capability
 from thymio_sim_ros.bridge.protocol.errors import BridgeError, FrameError
 from thymio_sim_ros.bridge.protocol.messages import ServerInfo
 from thymio_sim_ros.bridge.server import BridgeServer

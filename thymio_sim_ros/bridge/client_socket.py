@@ -11,8 +11,8 @@ from http import HTTPStatus
 from aiohttp import WSMsgType, web
 from aiohttp.abc import AbstractStreamWriter
 
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, Message, Pong
-from thymio_sim_ros.bridge.handshake import RefusedError
 
 __all__ = ["ClientSocket"]
 
@@ -25,12 +25,10 @@ _BATCH = 64
 class ClientSocket:
     """The open WebSocket of a client. Only for the thread of the event loop."""
 
-    def __init__(self, socket: web.WebSocketResponse, writer: AbstractStreamWriter, address: str) -> None:
+    def __init__(self, socket: web.WebSocketResponse, writer: AbstractStreamWriter) -> None:
         """Only for `accept`."""
         self.response = socket
         """The answer to the client's request."""
-        self.address = address
-        """That of the client."""
         self._writer = writer
         self._sending: asyncio.Task[None] | None = None
 
@@ -55,7 +53,7 @@ class ClientSocket:
         )
         writer = await socket.prepare(request)
         assert writer is not None
-        return cls(socket, writer, request.remote or "")
+        return cls(socket, writer)
 
     @property
     def protocol(self) -> str | None:

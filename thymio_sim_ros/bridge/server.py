@@ -15,9 +15,10 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 
+from thymio_sim_ros.access import AccessCheck, AccessRules, Role
+from thymio_sim_ros.access.origins import FOXGLOVE_APPS
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, Message
-from thymio_sim_ros.bridge.handshake import HandshakeCheck
-from thymio_sim_ros.bridge.protocol.constants import Role, StatusLevel
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.protocol.errors import FrameError
 from thymio_sim_ros.bridge.protocol.messages import (
     ClientMessage,
@@ -29,6 +30,7 @@ from thymio_sim_ros.bridge.protocol.messages import (
     Unsubscribe,
 )
 from thymio_sim_ros.bridge.protocol.wire import data_head, decode_client, encode_server
+from thymio_sim_ros.bridge.report_limiter import ReportLimiter
 from thymio_sim_ros.bridge.rosbridge import frames
 from thymio_sim_ros.bridge.settings import EventSink, ServerSettings
 from thymio_sim_ros.bridge.switchboard.events import (
@@ -78,7 +80,9 @@ class BridgeServer:
         self.throttle = Throttle(_SLICE_S)
         """Limits the time of busy clients."""
         self._log = logging.getLogger(__name__)
-        self.handshakes = HandshakeCheck(self.settings.tokens, self.settings.allowed_origins, self._log)
+        origins = (*self.settings.allowed_origins, *FOXGLOVE_APPS)
+        report = ReportLimiter(lambda text: self._log.warning("%s", text))
+        self.access = AccessCheck(AccessRules(self.settings.tokens, allowed_origins=origins), report)
         """Decides who may connect."""
         self.is_closing = False
         self._board, self._loop = board, loop

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access import Tokens
 from thymio_sim_ros.bridge.switchboard.events import Event
 
 __all__ = ["REFUSED_FACTOR", "EventSink", "ServerSettings"]
@@ -30,7 +30,7 @@ class ServerSettings:
     """Limits and options of a server."""
 
     allowed_origins: tuple[str, ...] = ()
-    """Additional origins of web pages (see `origin_policy`); `*` allows all."""
+    """Additional origins of web pages (see `access.origins`); `*` allows all."""
     buffer_limit: int = 1 << 20
     """Bytes that may be buffered for a client before data frames are dropped."""
     max_message_size: int = 4 << 20

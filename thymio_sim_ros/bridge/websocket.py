@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import time
+from http import HTTPStatus
 
 from aiohttp import WSCloseCode, web
 
+from thymio_sim_ros.access import RefusedError, Role, Visitor
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, Message
 from thymio_sim_ros.bridge.client_socket import ClientSocket
-from thymio_sim_ros.bridge.handshake import WRONG_TOKEN, select_subprotocol, token_problem
-from thymio_sim_ros.bridge.protocol.constants import Role, StatusLevel
+from thymio_sim_ros.bridge.handshake import WRONG_TOKEN, select_subprotocol
+from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.protocol.messages import Status
 from thymio_sim_ros.bridge.protocol.wire import encode_server
 from thymio_sim_ros.bridge.rosbridge import frames
@@ -35,10 +37,10 @@ class BridgeSockets:
         self._sockets: set[ClientSocket] = set()
         """Those of its clients."""
 
-    async def handle(self, request: web.BaseRequest) -> web.StreamResponse:
+    async def handle(self, request: web.BaseRequest, visitor: Visitor) -> web.StreamResponse:
         """Serve a client until it disconnects or the server closes. Raises RefusedError for an invalid handshake."""
         protocol = select_subprotocol(request)
-        role = await self._bridge.handshakes.role(request)
+        role, problem = await self._role(visitor)
         settings = self._bridge.settings
         socket = await ClientSocket.accept(
             request,
@@ -49,11 +51,24 @@ class BridgeSockets:
         if not self._bridge.has_place():
             await socket.close(WSCloseCode.TRY_AGAIN_LATER, "too many clients")
         elif role is None:
-            await socket.send(_access_problem(token_problem(request), is_rosbridge=protocol is None))
+            await socket.send(_access_problem(problem, is_rosbridge=protocol is None))
             await socket.close(WRONG_TOKEN, "wrong or missing token")
         elif request.transport is not None:  # None: the client has left meanwhile
             await self._serve(socket, request.transport, role)
         return socket.response
+
+    async def _role(self, visitor: Visitor) -> tuple[Role | None, str]:
+        """The role of a client. Raises RefusedError for one that may not connect.
+
+        A page without a valid token has none: it must be accepted and get the reason, the second value, because
+        browsers show it only the close code of an open connection.
+        """
+        try:
+            return await self._bridge.access.admit(visitor), ""
+        except RefusedError as error:
+            if error.status != HTTPStatus.UNAUTHORIZED or visitor.origin is None:
+                raise
+            return None, str(error)
 
     async def close(self) -> None:
         """Close all connections; abort those that do not answer within `_CLOSE_S`."""

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.bridge.access import is_loopback
-from thymio_sim_ros.bridge.visitor import NO_PROXIES, TrustedProxies, Visitor
+from thymio_sim_ros.access import NO_PROXIES, TrustedProxies, Visitor
+from thymio_sim_ros.access.hosts import host_name, is_loopback, is_loopback_name
 from thymio_sim_ros.names.addresses import urls
-from thymio_sim_ros.web.hosts import host_name, is_loopback_name
 
 __all__ = ["ClassAddress"]
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from aseba_vm.cli.output import write_file
-from thymio_sim_ros.bridge.access import TOKEN, new_token
+from thymio_sim_ros.access.tokens import TOKEN, new_token
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.pupils import folder_name
 

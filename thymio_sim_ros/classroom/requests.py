@@ -17,10 +17,10 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.classroom.classroom import MAX_MESSAGE, Classroom
-from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["MAX_BODY", "Answer", "RefusalError", "answer"]
+__all__ = ["MAX_BODY", "Answer", "answer"]
 
 MAX_BODY = 100_000
 """Bytes of a request's body."""
@@ -36,29 +36,21 @@ class Answer:
     file: str = ""
 
 
-class RefusalError(ThymioSimError):
-    """A request that is not answered: HTTP status and a text that says why."""
-
-    def __init__(self, status: int, text: str) -> None:
-        super().__init__(text)
-        self.status = status
-
-
 async def answer(classroom: Classroom, method: str, name: str, body: bytes, url: str) -> Answer:
-    """Carry out a request; `name` is its path after `class/`, `url` that of the class. Raises RefusalError."""
+    """Carry out a request; `name` is its path after `class/`, `url` that of the class. Raises RefusedError."""
     if method == "GET":
         return await _read(classroom, name, url)
     if method != "POST":
-        raise RefusalError(405, f"found {method[:20]}, expected GET or POST")
+        raise RefusedError(405, f"found {method[:20]}, expected GET or POST")
     act = _ACTIONS.get(name)
     if act is None:
-        raise RefusalError(404, f"found no such action; expected {', '.join(_ACTIONS)}")
+        raise RefusedError(404, f"found no such action; expected {', '.join(_ACTIONS)}")
     try:
         fields = json.loads(body or b"{}")
     except (ValueError, RecursionError) as error:
-        raise RefusalError(400, f"not JSON: {error}") from error
+        raise RefusedError(400, f"not JSON: {error}") from error
     if not isinstance(fields, dict):
-        raise RefusalError(400, "expected a JSON object")
+        raise RefusedError(400, "expected a JSON object")
     await act(classroom, fields)
     return _json({})
 
@@ -78,13 +70,13 @@ async def _read(classroom: Classroom, name: str, url: str) -> Answer:
         return _json(classroom.missing())
     if name.startswith("plans/") and (plan := await classroom.plan(name.removeprefix("plans/"))) is not None:
         return _json(plan)
-    raise RefusalError(404, "there is no such document")
+    raise RefusedError(404, "there is no such document")
 
 
 async def _pause(classroom: Classroom, fields: Mapping[str, Any]) -> None:
     paused = fields.get("paused")
     if not isinstance(paused, bool):
-        raise RefusalError(400, "paused: expected true or false")
+        raise RefusedError(400, "paused: expected true or false")
     await classroom.pause(_pupils(classroom, fields), paused=paused)
 
 
@@ -95,14 +87,14 @@ async def _restart(classroom: Classroom, fields: Mapping[str, Any]) -> None:
 async def _message(classroom: Classroom, fields: Mapping[str, Any]) -> None:
     text = fields.get("text")
     if not isinstance(text, str) or len(text) > MAX_MESSAGE:
-        raise RefusalError(400, f"text: expected a text of at most {MAX_MESSAGE} characters")
+        raise RefusedError(400, f"text: expected a text of at most {MAX_MESSAGE} characters")
     await classroom.message(_pupils(classroom, fields), text.strip())
 
 
 async def _show(classroom: Classroom, fields: Mapping[str, Any]) -> None:
     shown = fields.get("pupil")
     if shown is not None and not (isinstance(shown, str) and shown in classroom.seats):
-        raise RefusalError(400, "pupil: expected the id of a pupil, or null")
+        raise RefusedError(400, "pupil: expected the id of a pupil, or null")
     await classroom.show(shown)
 
 
@@ -120,7 +112,7 @@ def _pupils(classroom: Classroom, fields: Mapping[str, Any]) -> list[str]:
     if ids is None:
         return list(classroom.seats)
     if not isinstance(ids, list) or not all(isinstance(pupil, str) and pupil in classroom.seats for pupil in ids):
-        raise RefusalError(400, "pupils: expected ids of pupils, or null for all")
+        raise RefusedError(400, "pupils: expected ids of pupils, or null for all")
     return ids
 
 

@@ -13,13 +13,12 @@ from collections.abc import Callable, Mapping, Sequence
 
 from aiohttp import web
 
-from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError, given_token
-from thymio_sim_ros.bridge.visitor import TrustedProxies, Visitor
+from thymio_sim_ros.access import AccessCheck, AccessRules, RefusedError, Tokens, TrustedProxies, Visitor
+from thymio_sim_ros.access.check import Report
 from thymio_sim_ros.classroom.classroom import Classroom
-from thymio_sim_ros.classroom.requests import MAX_BODY, Answer, RefusalError, answer
+from thymio_sim_ros.classroom.requests import MAX_BODY, Answer, answer
 from thymio_sim_ros.classroom.seat import Seat
 from thymio_sim_ros.classroom.suite_proxy import SuiteProxy, is_upgrade
-from thymio_sim_ros.web.forwarded import as_sent, visitor_of
 from thymio_sim_ros.web.http_connections import COMMON_HEADERS, start_answer, text_response
 from thymio_sim_ros.web.server import Page
 
@@ -39,22 +38,22 @@ class Router:
         proxy: SuiteProxy,
         trusted_proxies: TrustedProxies,
         public_url: Callable[[Visitor], str],
+        report: Report,
     ) -> None:
-        """`public_url` returns the address of the class for pupils, as the visitor sees it."""
+        """`public_url` returns the address of the class for pupils, as the visitor sees it; `report`: as `Page`."""
         self._classroom, self._page, self._proxy = classroom, page, proxy
-        self._teacher = TokenCheck(Tokens(classroom.folder.teacher_token))
-        self._room = TokenCheck(Tokens(classroom.folder.room_code))
+        self._teacher = _check(classroom.folder.teacher_token, "token of the teacher", report)
+        self._room = _check(classroom.folder.room_code, "code of the room", report)
         self._trusted_proxies, self._public_url = trusted_proxies, public_url
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
-        visitor = visitor_of(request, self._trusted_proxies)
-        request = as_sent(request, visitor)
-        if (refusal := self._page.refusal(request)) is not None:
+        visitor = self._trusted_proxies.visitor_of(request)
+        if (refusal := self._page.refusal(request, visitor)) is not None:
             return refusal
         try:
             return await self._route(request, visitor)
-        except RefusalError as error:
+        except RefusedError as error:
             start_answer(request)
             response = text_response(error.status, str(error))
             response.force_close()  # the rest of a body may still arrive
@@ -66,13 +65,13 @@ class Router:
             case ["teacher"]:
                 return _redirect(request, f"teacher/{mark}{query}")
             case ["teacher", "class", *rest]:
-                await self._check(self._teacher, request)
+                await self._teacher.role(visitor)
                 body, url = await _body(request), self._public_url(visitor)
                 return _response(await answer(self._classroom, request.method, "/".join(rest), body, url))
             case ["teacher", *rest]:
-                return await self._page.answer(request, _file(rest, "class.html"))
+                return await self._page.answer(request, visitor, _file(rest, "class.html"))
             case ["room", "names"]:
-                await self._check(self._room, request)
+                await self._room.role(visitor)
                 start_answer(request)
                 return _response(Answer(json.dumps(self._classroom.room()).encode()))
             case ["p", pupil] if pupil in self._classroom.seats:
@@ -81,30 +80,24 @@ class Router:
                 seat = self._classroom.seats[pupil]
                 return await self._of_pupil(request, visitor, seat, f"{_file(rest, '')}{mark}{query}")
             case [first, *_] if first != "p":
-                return await self._page.answer(request, _file(names, "join.html"))
-        raise RefusalError(404, "There is no such page in this class.")
+                return await self._page.answer(request, visitor, _file(names, "join.html"))
+        raise RefusedError(404, "There is no such page in this class.")
 
     async def _of_pupil(
         self, request: web.BaseRequest, visitor: Visitor, seat: Seat, target: str
     ) -> web.StreamResponse:
         path = target.partition("?")[0]
         if request.method in ("GET", "HEAD") and path != _CONFIG and not is_upgrade(request):
-            file = await self._page.file(request, "/index.html" if path == "/" else path)
+            file = await self._page.file(request, visitor, "/index.html" if path == "/" else path)
             if file is not None:
                 return file
         return await self._proxy.forward(request, target, seat.port, visitor, seat.place.name)
 
-    async def _check(self, tokens: TokenCheck, request: web.BaseRequest) -> None:
-        """Raise RefusalError without the token. It is in a header, which no foreign page can send."""
-        given = given_token("", request.headers.getall("Authorization", []))
-        origin, host = request.headers.get("Origin"), request.headers.get("Host")
-        try:
-            role = await tokens.role(given, request.remote or "", origin=origin, host=host)
-        except TooManyAttemptsError as error:
-            raise RefusalError(429, str(error)) from error
-        if role is None:
-            what = "token of the teacher" if tokens is self._teacher else "code of the room"
-            raise RefusalError(401, f"expected the {what}: Authorization: Bearer …")
+
+def _check(token: str, what: str, report: Report) -> AccessCheck:
+    """Lets in who has a token. It counts in a header only, which no foreign page can send."""
+    hint = f"expected the {what}: Authorization: Bearer …"
+    return AccessCheck(AccessRules(Tokens(token), has_token_in_address=False, token_hint=hint), report)
 
 
 def _names(path: str) -> Sequence[str]:
@@ -139,6 +132,6 @@ async def _body(request: web.BaseRequest) -> bytes:
         async for chunk in request.content.iter_any():
             body += chunk
             if len(body) > MAX_BODY:
-                raise RefusalError(413, f"expected a body of at most {MAX_BODY} bytes")
+                raise RefusedError(413, f"expected a body of at most {MAX_BODY} bytes")
     start_answer(request)
     return bytes(body)

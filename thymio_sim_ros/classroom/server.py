@@ -32,7 +32,7 @@ async def serve_class(
     report = ReportLimiter(lambda text: log.warning("class: %s", text))
     page = Page(Content(folder, b"{}"), Settings(is_loopback=place.is_loopback), report)
     proxy = SuiteProxy()
-    router = Router(classroom, page, proxy, place.trusted_proxies, place.public_url)
+    router = Router(classroom, page, proxy, place.trusted_proxies, place.public_url, report)
     try:
         at_once = max_connections() // _DESCRIPTORS
         await serve_connections(listeners, router.answer, at_once, report, asyncio.Event())

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
+from thymio_sim_ros.access.tokens import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.classroom.folder import Place
 

@@ -15,7 +15,7 @@ from aiohttp import hdrs, web
 from multidict import CIMultiDict
 from yarl import URL
 
-from thymio_sim_ros.bridge.visitor import FORWARDED, Visitor
+from thymio_sim_ros.access.visitor import FORWARDED, Visitor
 from thymio_sim_ros.web.http_connections import COMMON_HEADERS, start_answer, start_stream, text_response
 
 __all__ = ["SuiteProxy", "Tunnel", "is_upgrade"]
@@ -108,7 +108,7 @@ def _headers(request: web.BaseRequest, visitor: Visitor) -> CIMultiDict[str]:
     headers["X-Forwarded-For"] = visitor.address
     headers["X-Forwarded-Proto"] = visitor.scheme
     headers["X-Forwarded-Prefix"] = visitor.prefix
-    if visitor.host is not None:
+    if visitor.host:
         headers["X-Forwarded-Host"] = visitor.host
     return headers
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 
-from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.access.hosts import is_loopback
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.cli import foxglove_layout
 from thymio_sim_ros.names.addresses import describe_access, loopback_problem, urls
 from thymio_sim_ros.network.robot_target import parse_target

@@ -11,8 +11,8 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from thymio_sim_ros.access.visitor import TrustedProxies
 from thymio_sim_ros.bridge.listening import listen
-from thymio_sim_ros.bridge.visitor import TrustedProxies
 from thymio_sim_ros.classroom.address import ClassAddress
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.errors import ClassError

@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 import os
 
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
+from thymio_sim_ros.access.tokens import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
+from thymio_sim_ros.access.visitor import ProxyError, TrustedProxies
 from thymio_sim_ros.bridge.listening import check_free
 from thymio_sim_ros.bridge.tls import TlsError, tls_context
-from thymio_sim_ros.bridge.visitor import ProxyError, TrustedProxies
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.servers import add_server_options, address_argument, port_argument
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig

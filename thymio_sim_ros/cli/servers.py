@@ -8,7 +8,8 @@ import ipaddress
 import re
 from dataclasses import dataclass
 
-from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.access.hosts import is_loopback
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.bridge.listening import check_free
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.names.addresses import describe_urls

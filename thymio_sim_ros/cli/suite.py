@@ -11,7 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import thymio_sim_ros
-from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.access.hosts import is_loopback
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.cli.banner import banner, qr_code, startup_notice
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import (

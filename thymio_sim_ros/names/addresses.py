@@ -5,7 +5,8 @@ from __future__ import annotations
 import ipaddress
 import socket
 
-from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.access.hosts import is_loopback
+from thymio_sim_ros.access.tokens import Tokens
 
 __all__ = ["describe_access", "describe_urls", "loopback_problem", "own_address", "urls"]
 

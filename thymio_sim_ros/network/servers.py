@@ -7,7 +7,7 @@ import socket
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.bridge.report_limiter import ReportLimiter
 from thymio_sim_ros.network.announcement import ASEBA, DEVICE_MANAGER, Announcement, Announcer, aseba_properties
 from thymio_sim_ros.network.aseba_server import AsebaServer

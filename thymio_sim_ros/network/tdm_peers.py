@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import ipaddress
-from collections.abc import AsyncIterator, Callable, Sequence
-from http import HTTPStatus
+from collections.abc import AsyncIterator, Callable
 from typing import Protocol
 
 from aiohttp import web
 
+from thymio_sim_ros.access import Visitor
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue
 from thymio_sim_ros.bridge.client_socket import ClientSocket
-from thymio_sim_ros.bridge.handshake import RefusedError
-from thymio_sim_ros.bridge.origin_policy import is_allowed
 from thymio_sim_ros.network.tdm.protocol.codec import MAX_MESSAGE_BYTES, StreamReader, framed
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError
 
@@ -30,9 +28,9 @@ _HEARTBEAT_S = 30.0
 class Peer(Protocol):
     """A connection of a client."""
 
-    address: str
+    visitor: Visitor
     is_direct: bool
-    """Whether `address` is that of the client; on the port of a page it may be that of a proxy."""
+    """Whether the address of `visitor` is that of the client; on the port of a page it may be that of a proxy."""
 
     def buffers(self) -> AsyncIterator[bytes]:
         """The buffers that arrive, until the connection ends. Raises TdmFrameError for a wrong frame."""
@@ -59,7 +57,7 @@ class TcpPeer:
     def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self._reader, self._writer = reader, writer
         peer = writer.get_extra_info("peername")
-        self.address = str(peer[0]) if peer else ""
+        self.visitor = Visitor(str(peer[0]) if peer else "", None)
 
     async def buffers(self) -> AsyncIterator[bytes]:
         """The buffers that arrive, until the connection ends."""
@@ -93,7 +91,15 @@ class TcpPeer:
 class WebSocketPeer:
     """A client on a WebSocket: each message is a binary frame."""
 
-    def __init__(self, socket: ClientSocket, transport: asyncio.Transport, max_unsent: int, *, is_direct: bool) -> None:
+    def __init__(
+        self,
+        socket: ClientSocket,
+        transport: asyncio.Transport,
+        visitor: Visitor,
+        max_unsent: int,
+        *,
+        is_direct: bool,
+    ) -> None:
         """Serve a client whose handshake is complete; `max_unsent`: see `TdmServer`."""
         self.is_direct = is_direct
         self.response = socket.response
@@ -102,7 +108,7 @@ class WebSocketPeer:
         self._queue = ClientSendQueue(
             max_unsent, warning=b"", buffered=transport.get_write_buffer_size, abort=transport.abort
         )
-        self.address = socket.address
+        self.visitor = visitor
         socket.send_from(self._queue)
 
     async def buffers(self) -> AsyncIterator[bytes]:
@@ -144,16 +150,9 @@ def is_this_computer(address: str) -> bool:
 
 
 async def accept_websocket(
-    request: web.BaseRequest, allowed_origins: Sequence[str], report: Report, max_unsent: int, *, is_direct: bool
+    request: web.BaseRequest, visitor: Visitor, max_unsent: int, *, is_direct: bool
 ) -> WebSocketPeer | None:
-    """Make the handshake with a client, except foreign web pages (`bridge.origin_policy`); None: it has left.
-
-    Raises RefusedError for a client that is rejected.
-    """
-    origin, host = (request.headers.getall(name, [None])[-1] for name in ("Origin", "Host"))
-    if not is_allowed(origin, host, allowed_origins):
-        report("tdm origin", f"web page from {origin:.100} rejected: add it to allowed_origins if it is yours")
-        raise RefusedError(HTTPStatus.FORBIDDEN, f"Pages from {origin} may not connect; see allowed_origins.")
+    """Make the handshake with a client; None: it has left. Raises RefusedError for one that asks for no WebSocket."""
     socket = await ClientSocket.accept(request, max_size=MAX_MESSAGE_BYTES, heartbeat_s=_HEARTBEAT_S)
     transport = request.transport
-    return None if transport is None else WebSocketPeer(socket, transport, max_unsent, is_direct=is_direct)
+    return None if transport is None else WebSocketPeer(socket, transport, visitor, max_unsent, is_direct=is_direct)

@@ -23,9 +23,10 @@ from uuid import uuid4
 from aiohttp import web
 
 from aseba_vm.protocol.messages import Message as AsebaMessage
-from thymio_sim_ros.bridge.access import TokenCheck, Tokens, TooManyAttemptsError
+from thymio_sim_ros.access import AccessCheck, AccessRules, RefusedError, Tokens, Visitor
+from thymio_sim_ros.access.attempts import TooManyAttemptsError
+from thymio_sim_ros.access.origins import FOXGLOVE_APPS
 from thymio_sim_ros.bridge.connections import Connections, ConnectionSlot, Phase
-from thymio_sim_ros.bridge.handshake import RefusedError
 from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.throttle import Throttle
 from thymio_sim_ros.network.acceptor import Acceptor
@@ -83,7 +84,10 @@ class TdmServer:
         """
         self._opened = opened
         self._hub, self._settings, self._report = hub, settings, report
-        self._passwords = TokenCheck(Tokens(password))
+        origins = (*settings.allowed_origins, *FOXGLOVE_APPS)
+        self._pages = AccessCheck(AccessRules(allowed_origins=origins), report)
+        """Decides about handshakes of WebSockets; the password is in a later message."""
+        self._passwords = AccessCheck(AccessRules(Tokens(password)), report)
         self._max_clients, self._max_unsent = max_clients, max_unsent
         self._slots = Connections(max_clients, time.monotonic)
         self._clock_ns = time.time_ns() - time.monotonic_ns()
@@ -125,7 +129,7 @@ class TdmServer:
             listener.setsockopt(SOL_SOCKET, SO_SNDBUF, _KERNEL_BUFFER)
         if tcp:
             self.port, self.ws_port = tcp[0].getsockname()[1], websocket[0].getsockname()[1]
-        manager = ManagerSettings(self.uuid, max(self.ws_port, 0), self._passwords.tokens.full)
+        manager = ManagerSettings(self.uuid, max(self.ws_port, 0), self._passwords.rules.tokens.full)
         self._manager = DeviceManager(manager, self._now_ns())
         self._hub.follow(self)
         self._acceptor = Acceptor(tcp, self._serve_tcp, self._report_error)
@@ -197,17 +201,18 @@ class TdmServer:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def handle_on_page(self, request: web.BaseRequest) -> web.StreamResponse:
+    async def handle_on_page(self, request: web.BaseRequest, visitor: Visitor) -> web.StreamResponse:
         """Serve a client on the port of a page. It gives the password, if there is one, also on this computer."""
         if not self._is_open:
             raise RefusedError(HTTPStatus.SERVICE_UNAVAILABLE, "the Thymio Device Manager does not run")
-        return await self._handle(request, is_direct=False)
+        return await self._handle(request, visitor, is_direct=False)
 
-    async def _handle(self, request: web.BaseRequest, *, is_direct: bool = True) -> web.StreamResponse:
+    async def _handle(
+        self, request: web.BaseRequest, visitor: Visitor, *, is_direct: bool = True
+    ) -> web.StreamResponse:
         """Serve a client that asks for a WebSocket, until it disconnects. Raises RefusedError for a foreign page."""
-        peer = await accept_websocket(
-            request, self._settings.allowed_origins, self._report, self._max_unsent, is_direct=is_direct
-        )
+        self._pages.check_page(visitor)
+        peer = await accept_websocket(request, visitor, self._max_unsent, is_direct=is_direct)
         if peer is not None:
             await self._serve(peer)
         return web.Response() if peer is None else peer.response
@@ -238,17 +243,19 @@ class TdmServer:
             peer.abort()
             return
         client = next(self._client_numbers)
-        slot = self._slots.add(peer.address)
+        slot = self._slots.add(peer.visitor.address)
         slot.close = partial(self._disconnect, client, "another client needs its place, and it has sent no handshake")
         self._peers[client] = peer
         self._manager.join(client, is_local=_is_local(peer))
         try:
             await self._read(client, peer, slot)
         except TooManyAttemptsError as error:
-            self._report("tdm password", f"client {peer.address} of the device manager is disconnected: {error}")
+            self._report(
+                "tdm password", f"client {peer.visitor.address} of the device manager is disconnected: {error}"
+            )
             peer.abort()
         except TdmFrameError as error:
-            self._report("tdm frame", f"client {peer.address} of the device manager is disconnected: {error}")
+            self._report("tdm frame", f"client {peer.visitor.address} of the device manager is disconnected: {error}")
             peer.abort()
         except Exception:
             self._report_bug()
@@ -284,7 +291,7 @@ class TdmServer:
     async def _count_password(self, message: TdmMessage, peer: Peer) -> None:
         """Delay the message that has a client's password, or raise TooManyAttemptsError, as long as many were wrong."""
         if isinstance(message, ConnectionHandshake) and not _is_local(peer):
-            await self._passwords.role(message.password, peer.address)
+            await self._passwords.role_of(message.password, peer.visitor)
 
     def _deliver(self) -> set[int]:
         """Send what the manager has for networks and clients; return the networks that have got something."""
@@ -339,10 +346,12 @@ class TdmServer:
         """Disconnect a client; what it has sent and is not processed yet is dropped."""
         peer = self._peers.pop(client, None)
         if peer is not None:
-            self._report("tdm closing", f"client {peer.address} of the device manager is disconnected: {reason}")
+            self._report(
+                "tdm closing", f"client {peer.visitor.address} of the device manager is disconnected: {reason}"
+            )
             peer.abort()
 
 
 def _is_local(peer: Peer) -> bool:
     """Whether a client is on this computer."""
-    return peer.is_direct and is_this_computer(peer.address)
+    return peer.is_direct and is_this_computer(peer.visitor.address)

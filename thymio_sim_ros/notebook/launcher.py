@@ -7,7 +7,7 @@ import secrets
 import sys
 from typing import Any
 
-from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
+from thymio_sim_ros.access.tokens import TOKEN_VARIABLE
 from thymio_sim_ros.files import resources
 
 __all__ = ["ARGUMENTS", "launcher"]

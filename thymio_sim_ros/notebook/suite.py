@@ -16,7 +16,7 @@ from pathlib import Path
 from types import TracebackType
 
 from thymio_sim_ros import course_packages
-from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
+from thymio_sim_ros.access.tokens import TOKEN_VARIABLE
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.notebook.launcher import ARGUMENTS, START_S
 from thymio_sim_ros.portable_ros import import_hook

@@ -1,8 +1,6 @@
 """The server of page and bridge: one application, on one port or more, independent of ROS.
 
 content       files, playgrounds and configuration as documents: bytes, type, entity tag
-forwarded     requests of visitors behind proxies
-hosts         names by which a server may be addressed
 http_connections
               connections with limits, on aiohttp (imported only in the server's thread: that takes a third of a second)
 application   which server answers a request

@@ -8,15 +8,13 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING
 
-from thymio_sim_ros.bridge.handshake import RefusedError
-from thymio_sim_ros.bridge.visitor import NO_PROXIES
-from thymio_sim_ros.web.forwarded import as_sent, visitor_of
+from thymio_sim_ros.access import NO_PROXIES, RefusedError, Visitor
 from thymio_sim_ros.web.http_connections import start_answer, text_response
 
 if TYPE_CHECKING:
     from aiohttp import web
 
-    Handler = Callable[[web.BaseRequest], Awaitable[web.StreamResponse]]
+    Handler = Callable[[web.BaseRequest, Visitor], Awaitable[web.StreamResponse]]
 
 __all__ = ["Application"]
 
@@ -36,15 +34,15 @@ class Application:
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
-        request = as_sent(request, visitor_of(request, self.trusted_proxies))
+        visitor = self.trusted_proxies.visitor_of(request)
         path = request.raw_path.partition("?")[0]
         is_websocket = request.headers.get("Upgrade", "").lower() == "websocket"
         if not is_websocket:
             for is_path, handler in self.interfaces:
                 if is_path(path):
-                    return await handler(request)
+                    return await handler(request, visitor)
             if self.page is not None:
-                return await self.page(request)
+                return await self.page(request, visitor)
         start_answer(request)
         if not is_websocket:
             return text_response(426, "There is no page here, only WebSockets: ws://…", {"Upgrade": "websocket"})
@@ -52,6 +50,6 @@ class Application:
             known = " or ".join(self.websockets) or "none"
             return text_response(404, f"There is no WebSocket at this path; expected {known}.")
         try:
-            return await self.websockets[path](request)
+            return await self.websockets[path](request, visitor)
         except RefusedError as error:
             return text_response(error.status, str(error), error.headers)

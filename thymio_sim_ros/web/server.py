@@ -12,10 +12,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 from aiohttp import web
 
+from thymio_sim_ros.access import AccessCheck, AccessRules, HostNames, RefusedError, Visitor
+from thymio_sim_ros.access.hosts import host_name
 from thymio_sim_ros.files.resources import PAGE_BUILD_HINT
 from thymio_sim_ros.sim.playground.reader import PlaygroundError
 from thymio_sim_ros.web.content import TYPES, Content, Document
-from thymio_sim_ros.web.hosts import host_name
 from thymio_sim_ros.web.http_connections import COMMON_HEADERS, Report, start_answer, text_response
 from thymio_sim_ros.web.settings import Settings
 
@@ -36,37 +37,36 @@ class Page:
     def __init__(self, content: Content, settings: Settings, report: Report) -> None:
         self._content = content
         self._settings = settings
-        self._report = report
+        names = HostNames.LOOPBACK if settings.is_loopback else HostNames.ANY
+        self._access = AccessCheck(AccessRules(host_names=names, allowed_hosts=settings.allowed_hosts), report)
         self._pool = ThreadPoolExecutor(2, "page")
 
     async def close(self) -> None:
         """End the helper threads, which read documents for a moment at most."""
         self._pool.shutdown(cancel_futures=True)
 
-    def refusal(self, request: web.BaseRequest) -> web.StreamResponse | None:
+    def refusal(self, request: web.BaseRequest, visitor: Visitor) -> web.StreamResponse | None:
         """The response to a request for another name of this computer; None: it may be answered."""
-        host = request.headers.get("Host")
-        if host is None or self._settings.is_allowed_host(host_name(host)):
-            return None
-        start_answer(request)
-        self._report(
-            "host", "request with another name of this computer rejected; see parameter allowed_hosts of web_ui"
-        )
-        return text_response(403, "This address is not one of this server's. Open it by localhost.")
+        try:
+            self._access.check_host(visitor)
+        except RefusedError as error:
+            start_answer(request)
+            return text_response(error.status, str(error))
+        return None
 
-    async def answer(self, request: web.BaseRequest, path: str | None = None) -> web.StreamResponse:
+    async def answer(self, request: web.BaseRequest, visitor: Visitor, path: str | None = None) -> web.StreamResponse:
         """The response to a request; `path` is that of the file, None if it is that of the request."""
-        if (refusal := self.refusal(request)) is not None:
+        if (refusal := self.refusal(request, visitor)) is not None:
             return refusal
         start_answer(request)
         if request.method not in ("GET", "HEAD"):
             response = text_response(405, "Only GET and HEAD are answered.", {"Allow": _METHODS})
             response.force_close()
             return response
-        found = await self.file(request, request.raw_path.partition("?")[0] if path is None else path)
+        found = await self.file(request, visitor, request.raw_path.partition("?")[0] if path is None else path)
         return text_response(404, "There is no such file.") if found is None else found
 
-    async def file(self, request: web.BaseRequest, path: str) -> web.StreamResponse | None:
+    async def file(self, request: web.BaseRequest, visitor: Visitor, path: str) -> web.StreamResponse | None:
         """The response to GET and HEAD of a file; None if there is no such file."""
         try:
             document = await asyncio.get_running_loop().run_in_executor(self._pool, self._content.find, path)
@@ -75,17 +75,17 @@ class Page:
             return text_response(422, str(error))
         if document is not None:
             start_answer(request)
-            return await self._document(request, document)
+            return await self._document(request, visitor, document)
         if self._content.is_built:
             return None
         start_answer(request)
         page = f"<!doctype html><meta charset=utf-8><title>Thymio</title><p>{PAGE_BUILD_HINT}</p>"
         return _response(503, page.encode(), TYPES[".html"], {"Cache-Control": "no-store"})
 
-    async def _document(self, request: web.BaseRequest, document: Document) -> web.StreamResponse:
+    async def _document(self, request: web.BaseRequest, visitor: Visitor, document: Document) -> web.StreamResponse:
         headers = {
             "Cache-Control": f"public, max-age={_HASH_LIFETIME_S}, immutable" if document.is_immutable else "no-cache",
-            "Content-Security-Policy": _policy(request.headers.get("Host", ""), self._settings.foxglove_port),
+            "Content-Security-Policy": _policy(visitor.host or "", self._settings.foxglove_port),
         }
         body, tag = document.body, document.tag
         if document.compressed is not None:

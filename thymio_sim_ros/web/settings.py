@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thymio_sim_ros.web.hosts import is_loopback_name
-
 __all__ = ["Settings", "max_connections"]
 
 _MAX_CONNECTIONS = 768
@@ -36,7 +34,3 @@ class Settings:
     foxglove_port: int = -1
     is_loopback: bool = True
     allowed_hosts: tuple[str, ...] = ()
-
-    def is_allowed_host(self, name: str | None) -> bool:
-        """Whether a request may address the server by this name; None: the name of the request is invalid."""
-        return not self.is_loopback or is_loopback_name(name, self.allowed_hosts)

@@ -12,9 +12,9 @@ from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from socket import socket
 from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros.access import TrustedProxies
 from thymio_sim_ros.bridge.listening import listen
 from thymio_sim_ros.bridge.report_limiter import ReportLimiter
-from thymio_sim_ros.bridge.visitor import TrustedProxies
 from thymio_sim_ros.web.content import Content
 from thymio_sim_ros.web.settings import Settings, max_connections
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tests.bridge.switchboard.boards import GRAPH, SERVICE, A, B, client_channel, refusals, switchboard
+from thymio_sim_ros.access.tokens import Role
 from thymio_sim_ros.bridge import Capability, ServerInfo
 from thymio_sim_ros.bridge.protocol import messages as ms
-from thymio_sim_ros.bridge.protocol.constants import Role
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.switchboard import READ_ONLY, Switchboard
 

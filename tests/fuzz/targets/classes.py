@@ -12,6 +12,7 @@ from functools import cache
 
 from tests.classroom.test_requests import OPTIONS, URL
 from tests.fuzz.target import FOLDER, Target, lines, text
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.bridge.protocol.wire import data_head
 from thymio_sim_ros.classroom.bridge_client import BridgeClient
 from thymio_sim_ros.classroom.cdr import CdrError, read_diagnostic, read_string
@@ -19,7 +20,7 @@ from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import ClassFolder
 from thymio_sim_ros.classroom.pupils import MAX_NAME, folder_name, read_pupils
-from thymio_sim_ros.classroom.requests import RefusalError, answer
+from thymio_sim_ros.classroom.requests import answer
 from thymio_sim_ros.classroom.seat import Seat
 from thymio_sim_ros.grading import assignment
 from thymio_sim_ros.grading.archives import RejectedError, read_zip
@@ -168,7 +169,7 @@ LIMITS = ("limits.cpu_s = 1", "tests = [", "hidden = [", "1979-05-27", "inf", "'
 TARGETS = (
     Target("pupils", _pupils, (ClassError,), _names, ("name", "Vorname", "nom", '"', ";", "\t")),
     Target("class-folder", _folder, (ClassError,), _class_files, ('"pupils":', '"number":', '"token":', "null")),
-    Target("class-request", _request, (RefusalError,), _requests, ("message", "restart", "pause", '"pupils":')),
+    Target("class-request", _request, (RefusedError,), _requests, ("message", "restart", "pause", '"pupils":')),
     Target("class-string", read_string, (CdrError,), _messages),
     Target("class-diagnostic", read_diagnostic, (CdrError,), _messages),
     Target("class-suite", _suite, (), _from_suite, ('"paused":', '"robots":', '"fallen":', "NaN", "\\ud800")),

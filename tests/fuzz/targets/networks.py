@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,15 +13,13 @@ from tests.fuzz.target import Target, lines, text
 from tests.fuzz.targets.aseba import WORDS, _files
 from tests.network.tdm.machine_node import MachineNode
 from tests.network.tdm.talk import Talk
-from thymio_sim_ros.bridge.access import Tokens, given_token
-from thymio_sim_ros.bridge.origin_policy import is_allowed
+from thymio_sim_ros.access import AccessCheck, AccessRules, HostNames, RefusedError, Tokens, TrustedProxies
 from thymio_sim_ros.network.http.programs import NodeToLoad, compile_file
-from thymio_sim_ros.network.http.requests import RequestError, parse_request
+from thymio_sim_ros.network.http.requests import parse_request
 from thymio_sim_ros.network.robot_target import TargetError, parse_target
 from thymio_sim_ros.network.tdm.protocol.codec import StreamReader, decode, encode, framed
 from thymio_sim_ros.network.tdm.protocol.errors import TdmFrameError, ValueTypeError
 from thymio_sim_ros.network.tdm.protocol.values import decode_value, encode_value
-from thymio_sim_ros.web.hosts import host_name, is_loopback_name
 
 REQUESTS = Path(__file__).parents[2] / "data" / "network" / "tdm_requests.json"
 
@@ -60,9 +60,12 @@ def _address(data: bytes) -> None:
 def _headers(data: bytes) -> None:
     """The headers of a web page that a browser has opened."""
     path, bearer, origin, host = (part.decode("latin-1") for part in lines(data, 4))
-    Tokens("secret-token", "reader-token").role(given_token(path, [bearer]))
-    is_allowed(origin, host)
-    is_loopback_name(host_name(host))
+    sent = {"Authorization": bearer, "Origin": origin, "Host": host}
+    sent |= {"X-Forwarded-For": bearer, "X-Forwarded-Host": host}
+    visitor = TrustedProxies(["127.0.0.1"]).visitor("127.0.0.1", lambda name: [sent.get(name, "")], target=path)
+    for rules in (AccessRules(host_names=HostNames.UNOWNED), AccessRules(Tokens("secret-token", "reader-token"))):
+        with contextlib.suppress(RefusedError):
+            asyncio.run(AccessCheck(rules, lambda about, text: None, now_s=lambda: 0.0).admit(visitor))
 
 
 def _recorded() -> Iterator[bytes]:
@@ -91,8 +94,8 @@ TARGETS = (
     Target("tdm-message", _buffer, (TdmFrameError,), _recorded),
     Target("tdm-stream", _stream, (TdmFrameError,), _streams),
     Target("tdm-value", _value, (ValueTypeError,), _values),
-    Target("http-request", _http_request, (RequestError,), _requests, ("/nodes", "/events", "reset", "?todo=", "%2F")),
-    Target("http-program", _http_program, (RequestError,), _files, WORDS),
+    Target("http-request", _http_request, (RefusedError,), _requests, ("/nodes", "/events", "reset", "?todo=", "%2F")),
+    Target("http-program", _http_program, (RefusedError,), _files, WORDS),
     Target("robot-address", _address, (TargetError,), lambda: [b"tcp:host=a;port=33333", b"ser:/dev/ttyACM0"]),
     Target("http-headers", _headers, (), lambda: [b"/?token=abcd\nBearer abcd\nhttp://[::1]:80\nlocalhost:80"]),
 )

@@ -10,7 +10,7 @@ from typing import Any
 
 from aseba_vm.protocol import Message
 from tests.patience import PATIENCE_S
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.device.behavior_host import BehaviorHost
 from thymio_sim_ros.device.device import AsebaDevice
 from thymio_sim_ros.device.network_node import NetworkNode

@@ -14,13 +14,14 @@ import pytest
 from aseba_vm import compile
 from aseba_vm.protocol import Disconnected, NodeClient, UserMessage, Variables
 from tests.network.http.robots import Robot
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.device.layout import target
 from thymio_sim_ros.network.http import gateway as limits
 from thymio_sim_ros.network.http import streams
 from thymio_sim_ros.network.http.gateway import Gateway
 from thymio_sim_ros.network.http.programs import compile_file
 from thymio_sim_ros.network.http.replies import Definitions, Reply, refusal
-from thymio_sim_ros.network.http.requests import LoadProgram, RequestError, StreamEvents, parse_request
+from thymio_sim_ros.network.http.requests import LoadProgram, StreamEvents, parse_request
 
 DATA = Path(__file__).parents[2] / "data" / "network"
 PROGRAM = (DATA / "http.aesl").read_bytes()
@@ -64,7 +65,7 @@ class Bench:
         found: list[Reply] = []
         try:
             self.begin(method, target, body, found)
-        except RequestError as error:
+        except RefusedError as error:
             return refusal(error)
         self.run()
         assert len(found) == 1
@@ -148,7 +149,7 @@ def answered(bench, exchange):
         return bench.ask(exchange["method"], exchange["target"], BODIES.get(body, body.encode()))
     try:
         bench.open(exchange["target"])
-    except RequestError as error:
+    except RefusedError as error:
         return refusal(error)
     return Reply(200)
 
@@ -391,7 +392,7 @@ def test_a_stream_of_a_robot_ends_with_its_network(two):
 def test_a_node_that_leaves_while_its_program_is_compiled(one):
     compiled = compile_file(PROGRAM, one.gateway.nodes_to_load(LoadProgram(None, b"")))
     one.gateway.remove_network(0)
-    with pytest.raises(RequestError, match="has left the network") as caught:
+    with pytest.raises(RefusedError, match="has left the network") as caught:
         one.gateway.load(compiled, [].append)
     assert caught.value.status == 409
 
@@ -416,7 +417,7 @@ def test_requests_and_streams_are_limited(one):
     one.run()
     assert len(found) == limits.MAX_WAITING
     opened = [one.gateway.subscribe(StreamEvents(None, None, None), [].append) for _ in range(streams.MAX_STREAMS)]
-    with pytest.raises(RequestError, match="64 streams are open already"):
+    with pytest.raises(RefusedError, match="64 streams are open already"):
         one.open("/events")
     one.gateway.unsubscribe(opened[0])
     one.gateway.unsubscribe(opened[0])

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.network.http.requests import (
     METHODS,
     DescribeNode,
     ListNodes,
     LoadProgram,
     ReadOrSend,
-    RequestError,
     ResetAll,
     Send,
     StreamEvents,
@@ -95,7 +95,7 @@ def test_a_request_becomes_an_action(method, target, body, action):
     ],
 )  # fmt: skip
 def test_an_error_says_what_was_expected(method, target, body, status, reason):
-    with pytest.raises(RequestError) as caught:
+    with pytest.raises(RefusedError) as caught:
         parse_request(method, target, body)
     assert (caught.value.status, str(caught.value)) == (status, reason)
 
@@ -108,7 +108,7 @@ def test_an_error_says_what_was_expected(method, target, body, status, reason):
 @example("POST", ["nodes", "1", "a"], b"[1e400]")
 @example("POST", ["nodes", "1", "a"], b"[" + b"9" * 5000 + b"]")
 def test_any_request_is_an_action_or_an_error(method, parts, body):
-    with contextlib.suppress(RequestError):
+    with contextlib.suppress(RefusedError):
         action = parse_request(method, "/" + "/".join(parts), body)
         if isinstance(action, Send):
             assert all(-0x8000 <= value <= 0x7FFF for value in action.values)

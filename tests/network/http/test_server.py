@@ -19,7 +19,7 @@ import pytest
 from aseba_vm.protocol import UserMessage
 from tests.network.http.robots import ServerThread
 from tests.patience import PATIENCE_S, until
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.network.http import server as limits
 from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.web import http_connections
@@ -341,4 +341,4 @@ def test_mutated_requests_do_no_harm(server):
     assert watching.next() == "pong 1 2"
     watching.close()
     until(lambda: server.call(lambda: server.server._gateway.waiting + server.server._gateway.stream_count) == 0)
-    assert server.problems == []
+    assert {about for about, _ in server.problems} <= {"host", "origin"}  # mutated headers, and no internal error

@@ -12,8 +12,8 @@ from websockets.exceptions import ConnectionClosed
 
 from tests.bridge.certificates import make_certificate, trusting
 from tests.bridge.studio import Studio
+from thymio_sim_ros.access.tokens import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.bridge import Capability, Tokens
-from thymio_sim_ros.bridge.access import READ_ONLY_VARIABLE, TOKEN_VARIABLE
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.ros.foxglove.graph import allow_list
 from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge

@@ -1,4 +1,4 @@
-"""Constants of the Foxglove WebSocket protocol: sub-protocols, capabilities, encodings, opcodes, status levels, roles.
+"""Constants of the Foxglove WebSocket protocol: sub-protocols, capabilities, encodings, opcodes, status levels.
 
 Opcodes and levels come from `foxglove-websocket`, the package that defined them. Its module `types` imports only the
 standard library, so the deprecated `websockets.legacy`, which its server needs, is not loaded. What the package lacks
@@ -25,7 +25,6 @@ __all__ = [
     "BinaryOpcode",
     "Capability",
     "ClientBinaryOpcode",
-    "Role",
     "StatusLevel",
 ]
 
@@ -52,10 +51,3 @@ class Capability(StrEnum):
     CONNECTION_GRAPH = "connectionGraph"
     ASSETS = "assets"
     TIME = "time"
-
-
-class Role(StrEnum):
-    """The permissions of a client; read-only clients get theirs in the metadata of serverInfo (key `access`)."""
-
-    FULL = "full"
-    READ_ONLY = "read_only"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from thymio_sim_ros.access import Role
 from thymio_sim_ros.bridge.protocol.connection_graph import ConnectionGraph
-from thymio_sim_ros.bridge.protocol.constants import Role
 from thymio_sim_ros.bridge.protocol.messages import ClientChannel
 from thymio_sim_ros.bridge.switchboard.pending_requests import PendingRequests
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from thymio_sim_ros.access import Role
 from thymio_sim_ros.bridge.protocol.connection_graph import ConnectionGraph
-from thymio_sim_ros.bridge.protocol.constants import Role
 from thymio_sim_ros.bridge.protocol.messages import (
     Channel,
     ClientChannel,

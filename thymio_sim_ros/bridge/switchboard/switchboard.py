@@ -10,8 +10,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import assert_never
 
+from thymio_sim_ros.access import Role
 from thymio_sim_ros.bridge.protocol import messages as ms
-from thymio_sim_ros.bridge.protocol.constants import Capability, Role
+from thymio_sim_ros.bridge.protocol.constants import Capability
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.client_channels import ClientChannels
 from thymio_sim_ros.bridge.switchboard.client_state import ClientState

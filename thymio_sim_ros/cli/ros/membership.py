@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from thymio_sim_ros import course_packages
-from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
+from thymio_sim_ros.access.tokens import TOKEN_VARIABLE
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.ros.graph_choice import check_ros
 from thymio_sim_ros.names.domain import describe_domain

@@ -14,6 +14,7 @@ from aseba_vm import Program
 from aseba_vm.protocol.messages import Message, Reset, Run, UserMessage
 from aseba_vm.protocol.node_client import NodeClient
 from aseba_vm.protocol.reports import EventReceived, NodeConnected, NodeDisconnected, ProgramLoaded, VariablesRead
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.network.http.nodes import Directory, Key
 from thymio_sim_ros.network.http.programs import Compiled, NodeToLoad
 from thymio_sim_ros.network.http.replies import (
@@ -31,7 +32,6 @@ from thymio_sim_ros.network.http.requests import (
     ListNodes,
     LoadProgram,
     ReadOrSend,
-    RequestError,
     ResetAll,
     Send,
     StreamEvents,
@@ -144,7 +144,7 @@ class Gateway:
         self._end(overdue, f"no answer of the node within {TIMEOUT_NS // 10**9} s")
 
     def start(self, action: Action, reply: ReplyTo) -> None:
-        """Carry out an action except LoadProgram and StreamEvents. Raises RequestError."""
+        """Carry out an action except LoadProgram and StreamEvents. Raises RefusedError."""
         match action:
             case ListNodes():
                 reply(json_reply([summary_json(view) for view in self._nodes.views().values()]))
@@ -167,7 +167,7 @@ class Gateway:
                 raise TypeError(f"{type(action).__name__} has a method of its own")
 
     def is_change(self, action: Action) -> bool:
-        """Whether an action changes anything on a node. Raises RequestError."""
+        """Whether an action changes anything on a node. Raises RefusedError."""
         match action:
             case ReadOrSend(node, name):
                 return self._nodes.event(self._nodes.find(node), name) is not None
@@ -176,11 +176,11 @@ class Gateway:
         return False
 
     def nodes_to_load(self, action: LoadProgram) -> list[NodeToLoad]:
-        """The nodes for which a file is to be compiled. Raises RequestError."""
+        """The nodes for which a file is to be compiled. Raises RefusedError."""
         views = self._nodes.views()
         keys = list(views) if action.node is None else [self._nodes.find(action.node)]
         if not keys:
-            raise RequestError(404, "no node is connected")
+            raise RefusedError(404, "no node is connected")
         return [
             NodeToLoad(key, view.remote.number, view.remote.description, view.robot)
             for key, view in views.items()
@@ -188,11 +188,11 @@ class Gateway:
         ]
 
     def load(self, compiled: Compiled, reply: ReplyTo) -> None:
-        """Load and run programs. Raises RequestError if a node has left or is another one since `nodes_to_load`."""
+        """Load and run programs. Raises RefusedError if a node has left or is another one since `nodes_to_load`."""
         for node, _ in compiled.programs:
             remote = self._nodes.remote(node.key)
             if remote is None or remote.description != node.target:
-                raise RequestError(409, f"node {node.target.name} has left the network or has started again")
+                raise RefusedError(409, f"node {node.target.name} has left the network or has started again")
         self._check_waiting()
         for node, program in compiled.programs:
             self._nodes.client(node.key).load(node.key[1], program.program)
@@ -201,7 +201,7 @@ class Gateway:
         self._loads.append(_Load(keys, self._now_ns + TIMEOUT_NS, reply, compiled.notes))
 
     def subscribe(self, action: StreamEvents, send: Callable[[bytes | None], None]) -> Subscription:
-        """Open a stream, until `unsubscribe`. Raises RequestError."""
+        """Open a stream, until `unsubscribe`. Raises RefusedError."""
         key = None if action.node is None else self._nodes.find(action.node)
         return self._streams.open(key, action, send)
 
@@ -213,7 +213,7 @@ class Gateway:
         """A node; an empty array if there is none, as in the reference."""
         try:
             key = self._nodes.find(text)
-        except RequestError as error:
+        except RefusedError as error:
             return Reply(error.status, b"[]")
         return json_reply(description_json(self._nodes.views()[key]))
 
@@ -236,7 +236,7 @@ class Gateway:
             return
         _, size = self._nodes.address(key, name)
         if not 1 <= len(values) <= size:
-            raise RequestError(400, f"{name}: found {len(values)} values, expected 1 to {size}")
+            raise RefusedError(400, f"{name}: found {len(values)} values, expected 1 to {size}")
         client.write(key[1], name, values)
 
     def _reset(self) -> None:
@@ -249,7 +249,7 @@ class Gateway:
 
     def _check_waiting(self) -> None:
         if self.waiting >= MAX_WAITING:
-            raise RequestError(503, f"{MAX_WAITING} requests wait for nodes already; send fewer at the same time")
+            raise RefusedError(503, f"{MAX_WAITING} requests wait for nodes already; send fewer at the same time")
 
     def _finish_read(self, key: Key, start: int, count: int) -> None:
         """Complete the oldest request that expects these words; a node on the radio answers in pieces."""
@@ -263,7 +263,7 @@ class Gateway:
         remote = self._nodes.remote(key)
         value = remote.value(read.name) if remote is not None and read.name in remote.addresses else None
         if value is None:
-            read.reply(refusal(RequestError(409, f"{read.name}: another program has been loaded meanwhile")))
+            read.reply(refusal(RefusedError(409, f"{read.name}: another program has been loaded meanwhile")))
         else:
             read.reply(json_reply(value))
 
@@ -287,4 +287,4 @@ class Gateway:
                 self._reads.remove(request)
             else:
                 self._loads.remove(request)
-            request.reply(refusal(RequestError(504, reason)))
+            request.reply(refusal(RefusedError(504, reason)))

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from aseba_vm import Program
 from aseba_vm.protocol.node_client import NodeClient
 from aseba_vm.protocol.remote_node import RemoteNode
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.network.http.replies import Definitions, NodeView
-from thymio_sim_ros.network.http.requests import RequestError
 
 __all__ = ["Directory", "Key"]
 
@@ -102,7 +102,7 @@ class Directory:
     def find(self, text: str) -> Key:
         """The node of this robot, else of this type, with this number, or of a type that begins so: the first of them.
 
-        Raises RequestError.
+        Raises RefusedError.
         """
         views = self.views()
         for matches in (
@@ -115,17 +115,17 @@ class Directory:
                 if matches(view):
                     return key
         known = ", ".join(f"{view.number} ({view.robot or view.remote.description.name})" for view in views.values())
-        raise RequestError(404, f"no node {text[:80]!r}; expected {known or 'a node, but none is connected'}")
+        raise RefusedError(404, f"no node {text[:80]!r}; expected {known or 'a node, but none is connected'}")
 
     def event(self, key: Key, name: str) -> tuple[int, int] | None:
         """Number and size of an event of a program; None for an unknown name."""
         return self.definitions(key).event(name)
 
     def address(self, key: Key, name: str) -> tuple[int, int]:
-        """Address and size of a variable. Raises RequestError."""
+        """Address and size of a variable. Raises RefusedError."""
         found = self.client(key).nodes[key[1]].addresses.get(name)
         if found is None:
-            raise RequestError(404, f"no variable and no event {name[:80]!r} on this node")
+            raise RefusedError(404, f"no variable and no event {name[:80]!r} on this node")
         return found
 
     def _all(self) -> Iterator[tuple[Key, str, RemoteNode]]:

@@ -9,11 +9,11 @@ from aseba_vm import AeslError, CompileError, aesl, compile
 from aseba_vm.aesl.network import with_vpl_events
 from aseba_vm.errors import TextError
 from aseba_vm.target import TargetDescription
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.device.programs.program import ThymioProgram, of_node
 from thymio_sim_ros.device.programs.program_assignment import RobotId, assign_nodes, note_lines
 from thymio_sim_ros.files.block_files import BlocksError, open_program
 from thymio_sim_ros.network.http.replies import Definitions
-from thymio_sim_ros.network.http.requests import RequestError
 
 __all__ = ["Compiled", "NodeToLoad", "compile_file"]
 
@@ -42,7 +42,7 @@ class Compiled:
 
 
 def compile_file(text: bytes, nodes: Sequence[NodeToLoad]) -> Compiled:
-    """Compile an .aesl file, or bare Aseba text, for each node. Raises RequestError with line and column.
+    """Compile an .aesl file, or bare Aseba text, for each node. Raises RefusedError with line and column.
 
     The programs of the file go to nodes as everywhere else (`assign_nodes`). A node without one gets the empty program.
     """
@@ -56,16 +56,16 @@ def compile_file(text: bytes, nodes: Sequence[NodeToLoad]) -> Compiled:
             for node, (found, _) in zip(nodes, shares, strict=True)
         )
     except BlocksError as error:
-        raise RequestError(400, str(error)) from error
+        raise RefusedError(400, str(error)) from error
     except (AeslError, TextError) as error:
-        raise RequestError(400, f"line {error.line}, column {error.column}: {error}") from error
+        raise RefusedError(400, f"line {error.line}, column {error.column}: {error}") from error
     notes = note_lines((node.robot or node.target.name, notes) for node, (_, notes) in zip(nodes, shares, strict=True))
     return Compiled(programs, Definitions(network.events, network.constants), (*opened.notes, *notes))
 
 
 def _parse(text: str) -> aesl.Network:
     if not text.strip():
-        raise RequestError(400, "the body is empty; expected an .aesl file or the text of a program")
+        raise RefusedError(400, "the body is empty; expected an .aesl file or the text of a program")
     return with_vpl_events(aesl.loads(text, strict=True) if aesl.is_aesl(text) else aesl.bare(text, ""))
 
 
@@ -74,7 +74,7 @@ def _compile(text: str, network: aesl.Network, node: aesl.Node, target: TargetDe
         program = compile(node.code, target, events=network.events, constants=network.constants)
     except CompileError as error:
         if error.pos is None:
-            raise RequestError(400, str(error)) from error
+            raise RefusedError(400, str(error)) from error
         row, col = node.place(error.pos.offset)
-        raise RequestError(400, f"line {row + 1}, column {col + 1}: {error}") from error
+        raise RefusedError(400, f"line {row + 1}, column {col + 1}: {error}") from error
     return of_node(program, node, network, NAME, text)

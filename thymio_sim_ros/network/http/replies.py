@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from aseba_vm.protocol.remote_node import RemoteNode
-from thymio_sim_ros.network.http.requests import RequestError
+from thymio_sim_ros.access import RefusedError
 
 __all__ = [
     "Definitions",
@@ -65,7 +65,7 @@ def done(notes: Sequence[str] = ()) -> Reply:
     return Reply(200, "".join(f"{note}\n" for note in notes).encode(), TEXT_TYPE) if notes else Reply(204)
 
 
-def refusal(error: RequestError) -> Reply:
+def refusal(error: RefusedError) -> Reply:
     """The reply to a request that cannot be answered."""
     return Reply(error.status, f"{error}\n".encode(), TEXT_TYPE)
 

@@ -11,7 +11,7 @@ import urllib.parse
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.access import RefusedError
 
 __all__ = [
     "METHODS",
@@ -20,7 +20,6 @@ __all__ = [
     "ListNodes",
     "LoadProgram",
     "ReadOrSend",
-    "RequestError",
     "ResetAll",
     "Send",
     "StreamEvents",
@@ -40,14 +39,6 @@ _RESETS = ("reset", "reset_all")
 _NUMBER = re.compile(r"[+-]?[0-9]{1,9}(?:\.[0-9]*)?")
 _XML_FORM = b"file="
 """Begin of a body for `asebahttp2`, which other programs send as well."""
-
-
-class RequestError(ThymioSimError):
-    """A request that cannot be answered: HTTP status and the reason."""
-
-    def __init__(self, status: int, reason: str) -> None:
-        super().__init__(reason)
-        self.status = status
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +102,9 @@ def is_path(path: str) -> bool:
 
 
 def parse_request(method: str, target: str, body: bytes) -> Action:
-    """The action of a request; `target` is its path with query. Raises RequestError."""
+    """The action of a request; `target` is its path with query. Raises RefusedError."""
     if len(target) > _MAX_PATH:
-        raise RequestError(414, f"path of {len(target)} characters, expected at most {_MAX_PATH}")
+        raise RefusedError(414, f"path of {len(target)} characters, expected at most {_MAX_PATH}")
     path, _, query = target.partition("?")
     parts = [part for part in urllib.parse.unquote(path).split("/") if part]
     match parts:
@@ -133,7 +124,7 @@ def parse_request(method: str, target: str, body: bytes) -> Action:
             return _only(method, ("GET",), StreamEvents(node, _first(names), _limit(query)))
         case ["nodes", node, name, *words]:
             return _of_name(method, node, name, words, body)
-    raise RequestError(404, "no such path; expected /nodes, /events or /reset")
+    raise RefusedError(404, "no such path; expected /nodes, /events or /reset")
 
 
 def _of_name(method: str, node: str, name: str, words: Sequence[str], body: bytes) -> Action:
@@ -147,7 +138,7 @@ def _of_name(method: str, node: str, name: str, words: Sequence[str], body: byte
 
 def _only(method: str, allowed: tuple[str, ...], action: Action, also: tuple[str, ...] = ()) -> Action:
     if method not in allowed:
-        raise RequestError(405, f"{method} is not possible here; expected {' or '.join((*allowed, *also))}")
+        raise RefusedError(405, f"{method} is not possible here; expected {' or '.join((*allowed, *also))}")
     return action
 
 
@@ -161,7 +152,7 @@ def _limit(query: str) -> int | None:
     if given is None:
         return None
     if not re.fullmatch(r"[0-9]{1,9}", given[-1]):
-        raise RequestError(400, "todo: expected a number of events, as in ?todo=5")
+        raise RefusedError(400, "todo: expected a number of events, as in ?todo=5")
     return int(given[-1]) or None
 
 
@@ -176,13 +167,13 @@ def _values(body: bytes) -> tuple[int, ...]:
     if not body.strip():
         return ()
     if len(body) > _MAX_VALUES:
-        raise RequestError(413, f"found {len(body)} bytes of values, expected at most {_MAX_VALUES}")
+        raise RefusedError(413, f"found {len(body)} bytes of values, expected at most {_MAX_VALUES}")
     try:
         found = json.loads(body)
     except (ValueError, RecursionError) as error:
-        raise RequestError(400, "the body is not JSON; expected an array of numbers, as in [100, -100]") from error
+        raise RefusedError(400, "the body is not JSON; expected an array of numbers, as in [100, -100]") from error
     if not isinstance(found, list):
-        raise RequestError(400, "expected an array of numbers, as in [100, -100]")
+        raise RefusedError(400, "expected an array of numbers, as in [100, -100]")
     return _checked([_json_word(value) for value in found])
 
 
@@ -190,24 +181,24 @@ def _json_word(value: object) -> int:
     if isinstance(value, str):
         return _word(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise RequestError(400, f"found {json.dumps(value):.40} among the values, expected numbers")
+        raise RefusedError(400, f"found {json.dumps(value):.40} among the values, expected numbers")
     if isinstance(value, float) and not abs(value) < 1e9:
-        raise RequestError(400, f"found {value}, expected numbers of 16 bits")
+        raise RefusedError(400, f"found {value}, expected numbers of 16 bits")
     return int(value)
 
 
 def _word(text: str) -> int:
     """A number of a path. Decimals are cut off, as in the reference: programs compute speeds with them."""
     if not _NUMBER.fullmatch(text):
-        raise RequestError(400, f"found {text[:40]!r} among the values, expected numbers")
+        raise RefusedError(400, f"found {text[:40]!r} among the values, expected numbers")
     return int(text.partition(".")[0])
 
 
 def _checked(values: Sequence[int]) -> tuple[int, ...]:
     """Values of 16 bits, with or without sign, as int16."""
     if len(values) > MAX_WORDS:
-        raise RequestError(400, f"found {len(values)} values, expected at most {MAX_WORDS}")
+        raise RefusedError(400, f"found {len(values)} values, expected at most {MAX_WORDS}")
     for value in values:
         if not -0x8000 <= value <= 0xFFFF:
-            raise RequestError(400, f"found {value}, expected a number of 16 bits, -32768..32767")
+            raise RefusedError(400, f"found {value}, expected a number of 16 bits, -32768..32767")
     return tuple(value - 0x10000 if value >= 0x8000 else value for value in values)

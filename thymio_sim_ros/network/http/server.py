@@ -10,16 +10,17 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from http import HTTPStatus
 from socket import socket
 
 from aiohttp import web
 
 from aseba_vm.protocol.messages import Message
 from aseba_vm.protocol.node_client import NodeClient
-from thymio_sim_ros.bridge.access import TokenCheck, Tokens
+from thymio_sim_ros.access import NO_PROXIES, AccessCheck, AccessRules, HostNames, RefusedError, Role, Tokens, Visitor
+from thymio_sim_ros.access.hosts import is_loopback
 from thymio_sim_ros.bridge.listening import listen
-from thymio_sim_ros.bridge.protocol.constants import Role
-from thymio_sim_ros.network.http.access import AccessPolicy, check_origin, check_token, cors_headers
+from thymio_sim_ros.network.http.cors import cors_headers
 from thymio_sim_ros.network.http.gateway import Gateway
 from thymio_sim_ros.network.http.programs import compile_file
 from thymio_sim_ros.network.http.replies import Definitions, Reply, refusal
@@ -27,7 +28,6 @@ from thymio_sim_ros.network.http.requests import (
     METHODS,
     Action,
     LoadProgram,
-    RequestError,
     StreamEvents,
     parse_request,
 )
@@ -65,11 +65,11 @@ class HttpServer:
     def __init__(self, hub: Hub, settings: NetworkSettings, report: Report, *, tokens: Tokens = NO_TOKENS) -> None:
         """Serve nothing until `start`. `report` takes a kind of problem and its description; clients need `tokens`."""
         self._hub, self._settings, self._report = hub, settings, report
-        self._policy = AccessPolicy(settings.address, tokens, settings.allowed_origins)
+        names = HostNames.LOOPBACK if is_loopback(settings.address) else HostNames.UNOWNED
+        self._access = AccessCheck(AccessRules(tokens, names, allowed_origins=settings.allowed_origins), report)
         self._gateway = Gateway()
         self._links: dict[Network, _Link] = {}
         self._loop = asyncio.get_running_loop()
-        self._check = TokenCheck(tokens, settings.allowed_origins)
         self._pool = ThreadPoolExecutor(1, "http-compiler")
         self._compilations = 0
         self._connections: HttpConnections
@@ -92,7 +92,7 @@ class HttpServer:
             return
         self._gateway.advance(self._now_ns())
         self._hub.follow(self)
-        self._connections = HttpConnections(self.answer, MAX_CONNECTIONS, self._report, self._loop)
+        self._connections = HttpConnections(self._answer_on_port, MAX_CONNECTIONS, self._report, self._loop)
         self._connections.accept(self._listeners)
         self._ticking = self._loop.create_task(self._advance_forever())
 
@@ -152,33 +152,33 @@ class HttpServer:
             if messages := link.client.pop_messages():
                 link.connection.send(*messages)
 
-    async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
+    async def _answer_on_port(self, request: web.BaseRequest) -> web.StreamResponse:
+        """The response to a request on the port of this server, which has no proxies."""
+        return await self.answer(request, NO_PROXIES.visitor_of(request))
+
+    async def answer(self, request: web.BaseRequest, visitor: Visitor) -> web.StreamResponse:
         """The response to a request."""
-        cors = cors_headers(request.headers, self._policy)
+        cors = cors_headers(request.headers, visitor, self._access)
         try:
-            check_origin(request.headers, self._policy)
+            self._access.check_page(visitor)
             if request.method == "OPTIONS":
                 start_answer(request)
                 return _response(Reply(200, b"", "text/plain"), {**cors, "Allow": _ALLOW})
-            role = await self._role(request)
+            role = await self._access.role(visitor)
             action = await _action(request)
             if role is not Role.FULL and self._gateway.is_change(action):
-                raise RequestError(403, "this token only reads")
+                raise RefusedError(403, "this token only reads")
             start_answer(request)
             if isinstance(action, StreamEvents):
                 return await self._stream(request, action, cors)
             return _response(await self._carry_out(action), cors)
-        except RequestError as error:
+        except RefusedError as error:
             start_answer(request)
-            response = _response(refusal(error), {**cors, **({"Allow": _ALLOW} if error.status == 405 else {})})
+            allow = {"Allow": _ALLOW} if error.status == HTTPStatus.METHOD_NOT_ALLOWED else {}
+            response = _response(refusal(error), {**error.headers, **cors, **allow})
             if not request.content.is_eof():  # the rest of a body that is not read
                 response.force_close()
             return response
-
-    async def _role(self, request: web.BaseRequest) -> Role:
-        authorizations = request.headers.getall("Authorization", [])
-        address = request.remote or ""
-        return await check_token(request.raw_path, authorizations, address, request.headers, self._check)
 
     async def _carry_out(self, action: Action) -> Reply:
         result: asyncio.Future[Reply] = self._loop.create_future()
@@ -197,7 +197,7 @@ class HttpServer:
     async def _load(self, action: LoadProgram, reply: Callable[[Reply], None]) -> None:
         nodes = self._gateway.nodes_to_load(action)
         if self._compilations >= MAX_COMPILATIONS:
-            raise RequestError(503, f"{MAX_COMPILATIONS} programs are being compiled already; try again later")
+            raise RefusedError(503, f"{MAX_COMPILATIONS} programs are being compiled already; try again later")
         self._compilations += 1
         try:
             compiled = await self._loop.run_in_executor(self._pool, compile_file, action.text, nodes)
@@ -267,14 +267,14 @@ async def _action(request: web.BaseRequest) -> Action:
     """The action of a request, after all of its body has arrived."""
     method = request.method
     if method not in METHODS:
-        raise RequestError(405, f"{method[:20]} is not answered; expected {_ALLOW}")
+        raise RefusedError(405, f"{method[:20]} is not answered; expected {_ALLOW}")
     body = await _body(request) if request.body_exists else b""
     return parse_request(method, request.raw_path, body)
 
 
 async def _body(request: web.BaseRequest) -> bytes:
     if (request.content_length or 0) > MAX_BODY:
-        raise RequestError(413, f"body of {request.content_length} bytes, expected at most {MAX_BODY}")
+        raise RefusedError(413, f"body of {request.content_length} bytes, expected at most {MAX_BODY}")
     if request.headers.get("Expect", "").lower() == "100-continue":
         await request.writer.write(b"HTTP/1.1 100 Continue\r\n\r\n")
         request.writer.output_size = 0
@@ -282,7 +282,7 @@ async def _body(request: web.BaseRequest) -> bytes:
     async for chunk in request.content.iter_any():
         chunks += chunk
         if len(chunks) > MAX_BODY:
-            raise RequestError(413, f"expected a body of at most {MAX_BODY} bytes")
+            raise RefusedError(413, f"expected a body of at most {MAX_BODY} bytes")
     return bytes(chunks)
 
 

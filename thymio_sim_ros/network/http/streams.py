@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.network.http.nodes import Key
 from thymio_sim_ros.network.http.replies import event_line
-from thymio_sim_ros.network.http.requests import RequestError, StreamEvents
+from thymio_sim_ros.network.http.requests import StreamEvents
 
 __all__ = ["MAX_STREAMS", "Streams", "Subscription"]
 
@@ -39,9 +40,9 @@ class Streams:
         return len(self._open)
 
     def open(self, key: Key | None, action: StreamEvents, send: Callable[[bytes | None], None]) -> Subscription:
-        """Open a stream, until `close`. Raises RequestError."""
+        """Open a stream, until `close`. Raises RefusedError."""
         if len(self._open) >= MAX_STREAMS:
-            raise RequestError(503, f"{MAX_STREAMS} streams are open already; close one of them")
+            raise RefusedError(503, f"{MAX_STREAMS} streams are open already; close one of them")
         stream = Subscription(key, action.name, action.limit, send)
         self._open[stream] = None
         return stream

@@ -13,7 +13,7 @@ from functools import partial
 from rclpy.node import Node
 
 from aseba_vm.protocol import Message
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.engine.devices import SentMessages
 from thymio_sim_ros.engine.inputs import (

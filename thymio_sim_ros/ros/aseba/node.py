@@ -25,7 +25,8 @@ from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 from std_msgs.msg import String
 
-from thymio_sim_ros.bridge.access import TOKEN_VARIABLE, Tokens, is_loopback
+from thymio_sim_ros.access.hosts import is_loopback
+from thymio_sim_ros.access.tokens import TOKEN_VARIABLE, Tokens
 from thymio_sim_ros.device.options import OptionError
 from thymio_sim_ros.files.loading import shipped_behaviours
 from thymio_sim_ros.network.settings import HTTP, TDM, NetworkSettings

@@ -17,7 +17,8 @@ from rclpy.context import Context
 from rclpy.executors import Executor
 
 import thymio_sim_ros
-from thymio_sim_ros.bridge.access import Tokens, is_loopback
+from thymio_sim_ros.access.hosts import is_loopback
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from thymio_sim_ros.bridge.visitor import ProxyError, TrustedProxies
+from thymio_sim_ros.access.visitor import ProxyError, TrustedProxies
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 
 __all__ = ["trusted_proxies"]

@@ -11,7 +11,7 @@ from websockets.sync.client import connect
 
 from tests.bridge.ros_client import RosClient
 from tests.patience import PATIENCE_S
-from thymio_sim_ros.bridge.access import Tokens
+from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.ros.foxglove.node import FoxgloveBridge
 from thymio_sim_ros.ros.foxglove.options import FoxgloveParams
 

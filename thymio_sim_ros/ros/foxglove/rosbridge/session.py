@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
-from thymio_sim_ros.bridge.protocol.constants import Role
+from thymio_sim_ros.access import Role
 from thymio_sim_ros.bridge.protocol.errors import FrameError
 from thymio_sim_ros.bridge.rosbridge import frames
 from thymio_sim_ros.bridge.rosbridge.fragments import Fragments

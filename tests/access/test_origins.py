@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.bridge.origin_policy import is_allowed
+from thymio_sim_ros.access.origins import FOXGLOVE_APPS, is_allowed
 
 HOST = "localhost:8765"
 
@@ -22,7 +22,7 @@ HOST = "localhost:8765"
     ],
 )
 def test_native_clients_this_machine_and_the_foxglove_app_may_connect(origin: str | None) -> None:
-    assert is_allowed(origin, HOST)
+    assert is_allowed(origin, HOST, FOXGLOVE_APPS)
 
 
 @pytest.mark.parametrize(
@@ -40,7 +40,7 @@ def test_native_clients_this_machine_and_the_foxglove_app_may_connect(origin: st
     ],
 )
 def test_other_pages_may_not(origin: str) -> None:
-    assert not is_allowed(origin, HOST)
+    assert not is_allowed(origin, HOST, FOXGLOVE_APPS)
 
 
 def test_a_page_from_the_robots_own_address_may_connect() -> None:

@@ -1,25 +1,30 @@
-"""The visitor behind a request: address and URL, as reverse proxies report them.
+"""The visitor behind a request: address and URL, as reverse proxies report them, and what it shows to be let in.
 
 A proxy in front of a server hides who asks and under which address: it says so in the headers `X-Forwarded-For`,
 `-Proto`, `-Host` and `-Prefix`. Any client can send these headers, therefore they count only from proxies that are
-named at the start. Pure: without sockets.
+named at the start. Without I/O.
 """
 
 from __future__ import annotations
 
 import ipaddress
 import re
+import urllib.parse
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
+from thymio_sim_ros.access.hosts import HOST
 from thymio_sim_ros.errors import ThymioSimError
+
+if TYPE_CHECKING:
+    from aiohttp.web import BaseRequest
 
 __all__ = ["FORWARDED", "NO_PROXIES", "ProxyError", "TrustedProxies", "Visitor"]
 
 FORWARDED = "x-forwarded-"
 """Beginning of the headers' names in lower case."""
 
-_HOST = re.compile(r"(?:[A-Za-z0-9_.-]{1,253}|\[[0-9A-Fa-f:.]{2,45}\])(?::\d{1,5})?")
 _PREFIX = re.compile(r"(?:/(?!\.{1,2}(?:/|$))[A-Za-z0-9._~-]{1,100}){1,20}/?")
 _SCHEMES = ("http", "https")
 
@@ -38,17 +43,25 @@ class Visitor:
     address: str
     """Numeric address, "" if it is unknown."""
     host: str | None
-    """Name and port as in a Host header, None without a valid one."""
+    """Name and port as in a Host header; None if there was none, "" for one that is invalid."""
     scheme: str = "http"
     prefix: str = ""
     """Path of the server: "" or such as `/lab/thymio`."""
     is_proxied: bool = False
     """Whether a trusted proxy has passed the request on."""
+    origin: str | None = None
+    """That of the web page which makes the request; None for a program, and for links and pictures."""
+    is_from_link: bool = False
+    """Whether the browser says that a page of another site has caused the request."""
+    query_token: str | None = field(default=None, repr=False)
+    """The token in `?token=` of the address."""
+    bearer_token: str | None = field(default=None, repr=False)
+    """The token in `Authorization: Bearer`, a header that no foreign page can send."""
 
     @property
     def url(self) -> str | None:
         """URL of the server with a slash at its end, None without a host."""
-        return None if self.host is None else f"{self.scheme}://{self.host}{self.prefix}/"
+        return f"{self.scheme}://{self.host}{self.prefix}/" if self.host else None
 
 
 class TrustedProxies:
@@ -62,20 +75,42 @@ class TrustedProxies:
         """Whether there is one."""
         return bool(self._networks)
 
-    def visitor(self, peer: str, values: Callable[[str], Sequence[str]], *, scheme: str = "http") -> Visitor:
+    def visitor_of(self, request: BaseRequest) -> Visitor:
+        """The visitor behind a request to a server of aiohttp."""
+        headers = request.headers
+        return self.visitor(
+            request.remote or "",
+            lambda name: headers.getall(name, []),
+            scheme=request.scheme,
+            target=request.raw_path,
+        )
+
+    def visitor(
+        self, peer: str, values: Callable[[str], Sequence[str]], *, scheme: str = "http", target: str = ""
+    ) -> Visitor:
         """The visitor of a request that has arrived from the address `peer` by `scheme`.
 
-        `values` returns the values of a header by its name, none if it was not sent.
+        `values` returns the values of a header by its name, none if it was not sent. `target`: path and query.
         """
-        host = _matching(_HOST, _last(values("Host")))
+        hosts, origins = values("Host"), values("Origin")
+        visitor = Visitor(
+            peer,
+            (_matching(HOST, _last(hosts)) or "") if hosts else None,
+            scheme,
+            origin=origins[-1] if origins else None,
+            is_from_link=_last(values("Sec-Fetch-Site")).lower() == "cross-site",
+            query_token=_query_token(target),
+            bearer_token=_bearer_token(values("Authorization")),
+        )
         if not self._is_trusted(_address(peer)):
-            return Visitor(peer, host, scheme)
+            return visitor
         given = _last(values("X-Forwarded-Proto")).lower()
-        return Visitor(
-            self._origin(peer, ",".join(values("X-Forwarded-For"))),
-            _matching(_HOST, _last(values("X-Forwarded-Host"))) or host,
-            given if given in _SCHEMES else scheme,
-            (_matching(_PREFIX, _last(values("X-Forwarded-Prefix"))) or "").rstrip("/"),
+        return replace(
+            visitor,
+            address=self._origin(peer, ",".join(values("X-Forwarded-For"))),
+            host=_matching(HOST, _last(values("X-Forwarded-Host"))) or visitor.host,
+            scheme=given if given in _SCHEMES else scheme,
+            prefix=(_matching(_PREFIX, _last(values("X-Forwarded-Prefix"))) or "").rstrip("/"),
             is_proxied=True,
         )
 
@@ -118,6 +153,19 @@ def _address(text: str) -> Address | None:
         except ValueError:
             continue
         return (address.ipv4_mapped or address) if address.version == 6 else address
+    return None
+
+
+def _query_token(target: str) -> str | None:
+    found = urllib.parse.parse_qs(target.partition("?")[2], errors="replace").get("token")
+    return found[-1] if found else None
+
+
+def _bearer_token(authorizations: Iterable[str]) -> str | None:
+    for value in authorizations:
+        scheme, _, token = value.partition(" ")
+        if scheme.lower() == "bearer":
+            return token.strip()
     return None
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import pytest
 
-from thymio_sim_ros.bridge.visitor import ProxyError, TrustedProxies, Visitor
+from thymio_sim_ros.access.visitor import NO_PROXIES, ProxyError, TrustedProxies, Visitor
 
 PROXY, PUPIL = "10.0.0.1", "192.0.2.7"
 PROXIES = TrustedProxies([PROXY, "fd00::/8"])
@@ -88,3 +88,37 @@ def test_a_request_without_a_host_has_no_url() -> None:
 def test_what_names_no_proxy_is_refused(text: str, reason: str) -> None:
     with pytest.raises(ProxyError, match=reason):
         TrustedProxies([text])
+
+
+@pytest.mark.parametrize(
+    ("target", "authorizations", "tokens"),
+    [
+        ("/?token=abcd", [], ("abcd", None)),
+        ("/?x=1&token=abcd", ["Bearer other"], ("abcd", "other")),
+        ("/", ["Bearer abcd"], (None, "abcd")),
+        ("/", ["Basic xyz", "bearer  abcd "], (None, "abcd")),
+        ("/?token=", [], (None, None)),
+        ("/token=abcd", ["Basic abcd"], (None, None)),
+        ("/?token=%ff", [], ("\ufffd", None)),
+    ],
+)
+def test_a_token_is_found_in_the_address_and_in_a_header(
+    target: str, authorizations: list[str], tokens: tuple[str | None, str | None]
+) -> None:
+    visitor = NO_PROXIES.visitor(PUPIL, headers({"Authorization": authorizations}), target=target)
+    assert (visitor.query_token, visitor.bearer_token) == tokens
+    assert "abcd" not in repr(visitor)
+
+
+@pytest.mark.parametrize(
+    ("sent", "host", "origin"),
+    [
+        ({}, None, None),
+        ({"Host": "local host"}, "", None),
+        ({"Host": ["a.example", "b.example"], "Origin": ["null", "http://a.example"]}, "b.example", "http://a.example"),
+    ],
+)
+def test_host_and_origin_are_those_of_the_last_header(sent, host: str | None, origin: str | None) -> None:
+    visitor = NO_PROXIES.visitor(PUPIL, headers(sent))
+    assert (visitor.host, visitor.origin) == (host, origin)
+    assert visitor.url == (f"http://{host}/" if host else None)
