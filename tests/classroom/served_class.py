@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import ssl
 from collections.abc import AsyncIterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,12 +26,17 @@ PAGES = ("index", "class", "join")
 class ServedClass:
     """A class of Ada and Ben that listens on loopback."""
 
-    port: int
+    place: ClassAddress
     classroom: Classroom
+
+    @property
+    def port(self) -> int:
+        """The port of the class."""
+        return self.place.port
 
     def url(self, path: str = "") -> str:
         """The URL of a path."""
-        return f"http://127.0.0.1:{self.port}/{path}"
+        return f"{self.place.scheme}://localhost:{self.port}/{path}"
 
 
 def built_page(path: Path) -> Path:
@@ -44,16 +50,24 @@ def built_page(path: Path) -> Path:
 
 
 @contextlib.asynccontextmanager
-async def served(path: Path, *, teacher_token: str = "", proxies: Sequence[str] = ()) -> AsyncIterator[ServedClass]:
+async def served(
+    path: Path,
+    *,
+    teacher_token: str = "",
+    proxies: Sequence[str] = (),
+    tls: ssl.SSLContext | None = None,
+    has_room: bool = True,
+) -> AsyncIterator[ServedClass]:
     """Serve a class whose suites are not started."""
     folder = ClassFolder(path / "class")
     folder.teacher_token = teacher_token or folder.teacher_token
     classroom = Classroom(folder.places(["Ada", "Ben"]), OPTIONS, folder)
     listeners = listen("127.0.0.1", 0)
-    place = ClassAddress("127.0.0.1", int(listeners[0].getsockname()[1]), TrustedProxies(proxies))
+    port = int(listeners[0].getsockname()[1])
+    place = ClassAddress("127.0.0.1", port, TrustedProxies(proxies), tls, has_room=has_room)
     serving = asyncio.create_task(server.serve_class(listeners, classroom, built_page(path), place))
     try:
-        yield ServedClass(place.port, classroom)
+        yield ServedClass(place, classroom)
     finally:
         serving.cancel()
         await asyncio.gather(serving, return_exceptions=True)

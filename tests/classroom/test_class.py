@@ -9,6 +9,7 @@ import json
 import signal
 import socket
 import urllib.error
+import urllib.request
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,10 +17,11 @@ from typing import Any
 
 import pytest
 from websockets.asyncio.client import connect
-from websockets.exceptions import WebSocketException
+from websockets.exceptions import ConnectionClosed, WebSocketException
 
 from tests.bridge.peers import Client, run
 from tests.classroom.class_support import RunningClass
+from tests.network.tdm.remote_client import with_robot
 from tests.patience import PATIENCE_S, until
 from thymio_sim_ros.bridge.protocol import messages as ms
 from thymio_sim_ros.bridge.protocol import wire
@@ -28,6 +30,8 @@ from thymio_sim_ros.classroom.cdr import read_string
 from thymio_sim_ros.classroom.suite_state import read_state
 from thymio_sim_ros.cli import main as commands
 from thymio_sim_ros.files import resources
+from thymio_sim_ros.network.tdm.protocol import messages as tdm
+from thymio_sim_ros.network.tdm.protocol.codec import decode, encode
 from thymio_sim_ros.testing.ros.domain import reserved
 
 pytestmark = pytest.mark.process
@@ -79,6 +83,45 @@ def test_a_bridge_needs_the_token_of_its_pupil(group: RunningClass) -> None:
             asked(group.bridge_of(ADA, token), ms.GetParameters(()))
     with pytest.raises(urllib.error.HTTPError, match="401"):
         group.request("state", token=group.token_of(ADA))
+
+
+def nodes_of_manager(address: str, password: str) -> Any:
+    """The nodes that a device manager shows to a client."""
+
+    async def talk() -> Any:
+        async with connect(address) as connection:
+            await connection.send(encode(tdm.ConnectionHandshake(password=password)))
+            while not isinstance(message := decode(await connection.recv()), tdm.NodesChanged):
+                pass
+            return message.nodes
+
+    return run(talk())
+
+
+def test_other_programs_use_the_robot_of_a_pupil_on_the_port_of_the_class(group: RunningClass) -> None:
+    """Two devices of Ada: what one loads by the Thymio Device Manager, the other reads by HTTP."""
+
+    def nodes(token: str, name: str = "") -> Any:
+        url = f"http://127.0.0.1:{group.port}/p/{ADA}/nodes{name}?token={token}"
+        with urllib.request.urlopen(url, timeout=PATIENCE_S) as answer:
+            return json.loads(answer.read())
+
+    async def drive(node: Any) -> str:
+        assert await node.compile("var found = 78\n") is None
+        await node.run()
+        return str(node.props["name"])
+
+    token = group.token_of(ADA)
+    address = f"ws://127.0.0.1:{group.port}/p/{ADA}/tdm"
+    assert [node["name"] for node in nodes(token)] == ["thymio-II"]
+    assert with_robot(address, token, drive) == "thymio-II"
+    until(lambda: nodes(token, "/thymio-II/found") == [78])
+    assert len(nodes_of_manager(address, token)) == 1
+    for wrong in ("", group.token_of(BEN)):
+        with pytest.raises(urllib.error.HTTPError, match="401"):
+            nodes(wrong)
+        with pytest.raises(ConnectionClosed):
+            nodes_of_manager(address, wrong)
 
 
 def test_poses_come_while_the_page_of_the_teacher_is_open(group: RunningClass) -> None:
@@ -216,6 +259,8 @@ def zipped(group: RunningClass) -> dict[str, str]:
         (["--pupils", "{names}", "--playground", "nowhere"], "nowhere"),
         (["--pupils", "{names}", "--ros", "--first-domain", "232"], "the last domain would be 233"),
         (["--pupils", "{names}", "--first-domain", "7"], "expected --ros"),
+        (["--pupils", "{names}", "--key", "key.pem"], "--key: expected --certificate"),
+        (["--pupils", "{names}", "--certificate", "{names}"], "--certificate: "),
     ],
 )
 def test_wrong_options_are_refused_before_anything_starts(

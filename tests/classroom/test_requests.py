@@ -6,12 +6,14 @@ import asyncio
 import io
 import json
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from thymio_sim_ros.access import RefusedError
+from thymio_sim_ros.access import RefusedError, TrustedProxies, Visitor
+from thymio_sim_ros.classroom.address import ClassAddress
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.folder import ClassFolder, Work
 from thymio_sim_ros.classroom.requests import Answer, answer
@@ -19,6 +21,8 @@ from thymio_sim_ros.classroom.suite_process import SuiteOptions
 
 OPTIONS = SuiteOptions("desk", "welcome")
 URL = "https://school.example/thymio/"
+PLACE = ClassAddress("127.0.0.1", 8100, TrustedProxies(["127.0.0.1"]))
+PUPIL = Visitor("192.0.2.7", "school.example", "https", "/thymio", is_proxied=True)
 
 
 class Teacher:
@@ -28,13 +32,15 @@ class Teacher:
         self.folder = ClassFolder(path)
         self.places = self.folder.places(["Ada", "Ben", "Eve", "Zoë"])
 
-    def ask(self, *requests: tuple[str, str, Any]) -> list[Answer]:
+    def ask(self, *requests: tuple[str, str, Any], place: ClassAddress = PLACE) -> list[Answer]:
         """The answers to requests: method, name, fields."""
 
         async def talk() -> list[Answer]:
             classroom = Classroom(self.places, OPTIONS, self.folder)
             return [
-                await answer(classroom, method, name, b"" if fields is None else json.dumps(fields).encode(), URL)
+                await answer(
+                    classroom, place, PUPIL, method, name, b"" if fields is None else json.dumps(fields).encode()
+                )
                 for method, name, fields in requests
             ]
 
@@ -99,6 +105,15 @@ def test_the_room_has_an_address_and_a_code(teacher: Teacher) -> None:
     room, code = json.loads(answered.body), teacher.folder.room_code
     assert (room["address"], room["code"], room["url"]) == (URL, code, f"{URL}#token={code}")
     assert room["qr"].startswith("<svg")
+
+
+def test_with_links_only_there_is_no_room(teacher: Teacher) -> None:
+    links_only = replace(PLACE, has_room=False)
+    assert json.loads(teacher.ask(("GET", "state", None), place=links_only)[0].body)["has_room"] is False
+    with pytest.raises(RefusedError) as raised:
+        teacher.ask(("GET", "room", None), place=links_only)
+    assert raised.value.status == 404
+    assert json.loads(teacher.ask(("GET", "state", None))[0].body)["has_room"] is True
 
 
 def test_plans_are_those_of_pupils(teacher: Teacher) -> None:

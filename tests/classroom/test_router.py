@@ -3,31 +3,45 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import socket
+import ssl
 from collections.abc import Awaitable, Callable, Mapping
 from pathlib import Path
 
 import aiohttp
 import pytest
 
+from tests.bridge.certificates import make_certificate
 from tests.bridge.peers import run
 from tests.classroom.served_class import FakeSuite, ServedClass, fake_suite, served
 from tests.patience import PATIENCE_S
 from thymio_sim_ros.access import attempts
+from thymio_sim_ros.bridge.tls import tls_context
 
 pytestmark = pytest.mark.process
 
 Scenario = Callable[[ServedClass, FakeSuite, aiohttp.ClientSession], Awaitable[None]]
 
 
-def play(path: Path, scenario: Scenario, *proxies: str) -> None:
+def play(path: Path, scenario: Scenario, *proxies: str, has_tls: bool = False, has_room: bool = True) -> None:
     """Run a scenario with a class behind `proxies`, a suite of Ada, and a client."""
+    path.mkdir(exist_ok=True)
+    files = make_certificate(path) if has_tls else None
+    tls = tls_context(*map(str, files)) if files else None
+    trust = ssl.create_default_context(cafile=files[0]) if files else True
 
     async def main() -> None:
-        async with asyncio.timeout(PATIENCE_S), served(path, proxies=proxies) as group, fake_suite(group) as suite:
-            timeout = aiohttp.ClientTimeout(total=PATIENCE_S)
-            async with aiohttp.ClientSession(timeout=timeout, auto_decompress=False) as client:
-                await scenario(group, suite, client)
+        timeout = aiohttp.ClientTimeout(total=PATIENCE_S)
+        async with (
+            asyncio.timeout(PATIENCE_S),
+            served(path, proxies=proxies, tls=tls, has_room=has_room) as group,
+            fake_suite(group) as suite,
+            aiohttp.ClientSession(
+                connector=aiohttp.TCPConnector(ssl=trust), timeout=timeout, auto_decompress=False
+            ) as client,
+        ):
+            await scenario(group, suite, client)
 
     run(main())
 
@@ -115,7 +129,7 @@ def test_a_suite_gets_the_address_of_the_visitor_not_a_claim(tmp_path: Path) -> 
         given = {**SPOOFED, "Cookie": "secret=1", "Forwarded": "for=192.0.2.7", "Authorization": "Bearer abcd"}
         headers = await forwarded(group, suite, client, given)
         assert headers["X-Forwarded-For"] == "127.0.0.1"
-        assert headers["X-Forwarded-Host"] == f"127.0.0.1:{group.port}"
+        assert headers["X-Forwarded-Host"] == f"localhost:{group.port}"
         assert headers["X-Forwarded-Prefix"] == ""
         assert headers["Authorization"] == "Bearer abcd"
         assert not {"Cookie", "Forwarded"} & set(headers)
@@ -173,7 +187,8 @@ def test_a_suite_that_is_away_is_a_503_that_names_the_pupil(tmp_path: Path) -> N
     play(tmp_path, scenario)
 
 
-def test_a_websocket_carries_messages_of_all_sizes_in_both_directions(tmp_path: Path) -> None:
+@pytest.mark.parametrize("has_tls", [False, True])
+def test_a_websocket_carries_messages_of_all_sizes_in_both_directions(tmp_path: Path, has_tls: bool) -> None:
     async def scenario(group: ServedClass, suite: FakeSuite, client: aiohttp.ClientSession) -> None:
         address = group.url("p/ada/?token=right")
         async with client.ws_connect(address, protocols=("foxglove.sdk.v1",), max_msg_size=0, compress=15) as socket:
@@ -188,7 +203,7 @@ def test_a_websocket_carries_messages_of_all_sizes_in_both_directions(tmp_path: 
                     assert (await socket.receive()).data == aiohttp.WSCloseCode.MESSAGE_TOO_BIG
         await suite.left.wait()
 
-    play(tmp_path, scenario)
+    play(tmp_path, scenario, has_tls=has_tls)
 
 
 def test_the_refusal_of_a_websocket_arrives_and_the_connection_can_be_used_on(tmp_path: Path) -> None:
@@ -247,3 +262,29 @@ def test_the_names_need_the_code_of_the_room(tmp_path: Path, monkeypatch: pytest
         assert (await ask(code, "192.0.2.1"))[0] == 200
 
     play(tmp_path, scenario, "127.0.0.1")
+
+
+def test_with_a_certificate_the_class_speaks_https_and_its_links_say_so(tmp_path: Path) -> None:
+    async def scenario(group: ServedClass, suite: FakeSuite, client: aiohttp.ClientSession) -> None:
+        async with client.post(group.url("p/ada/nodes"), data=b"[1]") as answer:
+            assert await answer.text() == "POST /nodes [1]"
+        assert suite.requests[-1].headers["X-Forwarded-Proto"] == "https"
+        headers = {"Authorization": f"Bearer {group.classroom.folder.teacher_token}"}
+        async with client.get(group.url("teacher/class/room"), headers=headers) as answer:
+            assert (await answer.json())["address"] == f"https://localhost:{group.port}/"
+        with pytest.raises(aiohttp.ClientConnectionError):
+            await client.get(group.url().replace("https", "http"))
+
+    play(tmp_path, scenario, has_tls=True)
+
+
+@pytest.mark.parametrize(("has_room", "status"), [(True, 200), (False, 404)])
+def test_names_cannot_be_chosen_in_a_class_with_links_only(tmp_path: Path, has_room: bool, status: int) -> None:
+    async def scenario(group: ServedClass, _suite: FakeSuite, client: aiohttp.ClientSession) -> None:
+        async with client.get(group.url("room")) as answer:
+            assert json.loads(await answer.read()) == {"has_code": has_room}
+        headers = {"Authorization": f"Bearer {group.classroom.folder.room_code}"}
+        async with client.get(group.url("room/names"), headers=headers) as answer:
+            assert answer.status == status
+
+    play(tmp_path, scenario, has_room=has_room)

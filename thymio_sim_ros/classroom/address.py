@@ -1,7 +1,8 @@
-"""Where a class listens, and its URL."""
+"""Where a class listens, its URL, and how pupils enter it."""
 
 from __future__ import annotations
 
+import ssl
 from dataclasses import dataclass
 
 from thymio_sim_ros.access import NO_PROXIES, TrustedProxies, Visitor
@@ -13,11 +14,20 @@ __all__ = ["ClassAddress"]
 
 @dataclass(frozen=True, slots=True)
 class ClassAddress:
-    """Where a class listens, and the proxies in front of it."""
+    """Where a class listens, the proxies in front of it, and how pupils enter."""
 
     address: str
     port: int
     trusted_proxies: TrustedProxies = NO_PROXIES
+    tls: ssl.SSLContext | None = None
+    """The certificate with which the class speaks https; None: http."""
+    has_room: bool = True
+    """Whether pupils can enter with the code of the room and choose a name, and not only by their links."""
+
+    @property
+    def scheme(self) -> str:
+        """That of the URL on the port of the class."""
+        return "http" if self.tls is None else "https"
 
     @property
     def is_loopback(self) -> bool:
@@ -27,4 +37,4 @@ class ClassAddress:
     def public_url(self, visitor: Visitor) -> str:
         """The URL of the class for other computers: as this visitor sees it, unless only its own computer does."""
         is_own = not visitor.is_proxied and is_loopback_name(host_name(visitor.host or ""))
-        return urls("http", self.address, self.port, "/")[-1] if visitor.url is None or is_own else visitor.url
+        return urls(self.scheme, self.address, self.port, "/")[-1] if visitor.url is None or is_own else visitor.url

@@ -3,7 +3,7 @@
 GET  class/state            pupils with what their robots do, see `Seat.summary`
 GET  class/plans/<plan>     a playground seen from above, see `plan_of`
 GET  class/sheet            names with links and their QR codes
-GET  class/room             address and code with which pupils pick a name, and the QR code of both
+GET  class/room             address and code with which pupils pick a name, and the QR code of both; not with links only
 GET  class/programs.zip     the programs of all pupils
 GET  class/missing          names of the pupils without one
 POST class/<action>         {"pupils": [ids] or null for all, …}; actions: see `_ACTIONS`
@@ -17,7 +17,8 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from thymio_sim_ros.access import RefusedError
+from thymio_sim_ros.access import RefusedError, Visitor
+from thymio_sim_ros.classroom.address import ClassAddress
 from thymio_sim_ros.classroom.classroom import MAX_MESSAGE, Classroom
 
 __all__ = ["MAX_BODY", "Answer", "answer"]
@@ -36,10 +37,12 @@ class Answer:
     file: str = ""
 
 
-async def answer(classroom: Classroom, method: str, name: str, body: bytes, url: str) -> Answer:
-    """Carry out a request; `name` is its path after `class/`, `url` that of the class. Raises RefusedError."""
+async def answer(
+    classroom: Classroom, place: ClassAddress, visitor: Visitor, method: str, name: str, body: bytes
+) -> Answer:
+    """Carry out a request of a visitor; `name` is its path after `class/`. Raises RefusedError."""
     if method == "GET":
-        return await _read(classroom, name, url)
+        return await _read(classroom, place, name, place.public_url(visitor))
     if method != "POST":
         raise RefusedError(405, f"found {method[:20]}, expected GET or POST")
     act = _ACTIONS.get(name)
@@ -55,13 +58,13 @@ async def answer(classroom: Classroom, method: str, name: str, body: bytes, url:
     return _json({})
 
 
-async def _read(classroom: Classroom, name: str, url: str) -> Answer:
+async def _read(classroom: Classroom, place: ClassAddress, name: str, url: str) -> Answer:
     if name == "state":
-        return _json(classroom.state())
+        return _json({**classroom.state(), "has_room": place.has_room})
     if name == "sheet":
         seats = classroom.seats.values()
         return _json([{"name": seat.place.name, **_with_qr_code(f"{url}p/{seat.link()}")} for seat in seats])
-    if name == "room":
+    if name == "room" and place.has_room:
         code = classroom.folder.room_code
         return _json({"address": url, "code": code, **_with_qr_code(f"{url}#token={code}")})
     if name == "programs.zip":

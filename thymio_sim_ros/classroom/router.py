@@ -1,6 +1,7 @@
 """The one port of a class: path → the page to pick a name, the teacher's page, or a pupil's page and suite.
 
-/                 the page on which a pupil picks a name; room/names is its list, which needs the code of the room
+/                 the page on which a pupil picks a name; room/names is its list, which needs the code of the room,
+                  room says whether there is a code
 /teacher/         the teacher's page; teacher/class/… is its interface (`requests`), which needs the teacher's token
 /p/<id>/          a pupil: files of the page come from here, all other requests are passed on to the suite
 """
@@ -9,12 +10,13 @@ from __future__ import annotations
 
 import json
 import urllib.parse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from aiohttp import web
 
-from thymio_sim_ros.access import AccessCheck, AccessRules, RefusedError, Tokens, TrustedProxies, Visitor
+from thymio_sim_ros.access import AccessCheck, AccessRules, RefusedError, Tokens, Visitor
 from thymio_sim_ros.access.check import Report
+from thymio_sim_ros.classroom.address import ClassAddress
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.requests import MAX_BODY, Answer, answer
 from thymio_sim_ros.classroom.seat import Seat
@@ -36,19 +38,18 @@ class Router:
         classroom: Classroom,
         page: Page,
         proxy: SuiteProxy,
-        trusted_proxies: TrustedProxies,
-        public_url: Callable[[Visitor], str],
+        place: ClassAddress,
         report: Report,
     ) -> None:
-        """`public_url` returns the address of the class for pupils, as the visitor sees it; `report`: as `Page`."""
+        """`report`: as `Page`."""
         self._classroom, self._page, self._proxy = classroom, page, proxy
         self._teacher = _check(classroom.folder.teacher_token, "token of the teacher", report)
         self._room = _check(classroom.folder.room_code, "code of the room", report)
-        self._trusted_proxies, self._public_url = trusted_proxies, public_url
+        self._place = place
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
         """The response to a request."""
-        visitor = self._trusted_proxies.visitor_of(request)
+        visitor = self._place.trusted_proxies.visitor_of(request)
         if (refusal := self._page.refusal(request, visitor)) is not None:
             return refusal
         try:
@@ -66,11 +67,16 @@ class Router:
                 return _redirect(request, f"teacher/{mark}{query}")
             case ["teacher", "class", *rest]:
                 await self._teacher.role(visitor)
-                body, url = await _body(request), self._public_url(visitor)
-                return _response(await answer(self._classroom, request.method, "/".join(rest), body, url))
+                body = await _body(request)
+                return _response(
+                    await answer(self._classroom, self._place, visitor, request.method, "/".join(rest), body)
+                )
             case ["teacher", *rest]:
                 return await self._page.answer(request, visitor, _file(rest, "class.html"))
-            case ["room", "names"]:
+            case ["room"]:
+                start_answer(request)
+                return _response(Answer(json.dumps({"has_code": self._place.has_room}).encode()))
+            case ["room", "names"] if self._place.has_room:
                 await self._room.role(visitor)
                 start_answer(request)
                 return _response(Answer(json.dumps(self._classroom.room()).encode()))

@@ -32,10 +32,10 @@ async def serve_class(
     report = ReportLimiter(lambda text: log.warning("class: %s", text))
     page = Page(Content(folder, b"{}"), Settings(is_loopback=place.is_loopback), report)
     proxy = SuiteProxy()
-    router = Router(classroom, page, proxy, place.trusted_proxies, place.public_url, report)
+    router = Router(classroom, page, proxy, place, report)
     try:
         at_once = max_connections() // _DESCRIPTORS
-        await serve_connections(listeners, router.answer, at_once, report, asyncio.Event())
+        await serve_connections(listeners, router.answer, at_once, report, asyncio.Event(), place.tls)
     finally:
         await page.close()
         await proxy.close()

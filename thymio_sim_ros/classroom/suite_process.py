@@ -74,14 +74,14 @@ def free_port() -> int:
 
 
 def command(options: SuiteOptions, port: int, program: str, parameters: Path) -> list[str]:
-    """The arguments of a pupil's suite: no servers for other programs, no tokens, which are in the environment.
+    """The arguments of a pupil's suite: all on one port, no tokens, which are in the environment.
 
     The suite is reached by the router of the class only. `parameters` is a file of ROS parameters with what the pupil
     has made.
     """
     return [
         "--portable" if options.first_domain is None else "--ros",
-        *("--address", "localhost", "--trusted-proxy", "127.0.0.1", "--no-aseba", "--no-tdm"),
+        *("--address", "localhost", "--trusted-proxy", "127.0.0.1", "--no-aseba", "--no-tdm-ports", "--http"),
         *("--port", str(port), "--no-foxglove-port"),
         *("--playground", options.playground, "--program", program),
         *("--ros-args", "-p", f"simulator:batch_ticks:={BATCH_TICKS}", "-p", f"simulator:clock_rate:={CLOCK_HZ}"),

@@ -22,7 +22,7 @@ from thymio_sim_ros.classroom.suite_process import SuiteOptions, discovery, prel
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import check_files, path_argument
 from thymio_sim_ros.cli.output import print_text
-from thymio_sim_ros.cli.page_options import add_proxy_option, check_port
+from thymio_sim_ros.cli.page_options import add_certificate_options, add_proxy_option, check_port, given_certificate
 from thymio_sim_ros.cli.ros.graph_choice import add_graph_options, check_ros
 from thymio_sim_ros.cli.servers import address_argument, port_argument
 from thymio_sim_ros.device.layout import THYMIO
@@ -53,7 +53,9 @@ def run(argv: Sequence[str]) -> int:
         raise UsageError(str(error)) from error
     check_files(given.playground, given.program, "", THYMIO)
     options = SuiteOptions(given.playground, given.program, _first_domain(given))
-    place = ClassAddress(given.address, given.port, TrustedProxies(given.trusted_proxy))
+    tls = given_certificate(given)
+    proxies = TrustedProxies(given.trusted_proxy)
+    place = ClassAddress(given.address, given.port, proxies, tls, has_room=not given.links_only)
     if options.first_domain is None:
         preload(PRELOADED, given.playground)
     with contextlib.ExitStack() as stack:
@@ -116,7 +118,11 @@ async def _serve(place: ClassAddress, classroom: Classroom, *, is_kept: bool) ->
 def _banner(place: ClassAddress, classroom: Classroom, *, is_kept: bool) -> str:
     folder, options = classroom.folder, classroom.options
     numbers = [seat.place.number for seat in classroom.seats.values()]
-    access = "this computer only" if place.is_loopback else "everyone in your network with the code or a link"
+    keys = "the code or a link" if place.has_room else "a link"
+    access = "this computer only" if place.is_loopback else f"everyone in your network with {keys}"
+    at = place.scheme, place.address, place.port
+    pupils = f"{describe_urls(*at, '/')}, code {folder.room_code}" if place.has_room else "by their links"
+    room = "a QR code for the room, and " if place.has_room else ""
     kept = "kept" if is_kept else "lost at the end: keep them with --folder"
     if options.first_domain is None:
         graph = "embedded graphs: nodes of pupils reach their robots by `thymio-sim node`; --ros is for other ROS nodes"
@@ -126,9 +132,9 @@ def _banner(place: ClassAddress, classroom: Classroom, *, is_kept: bool) -> str:
     return "\n".join(
         [
             f"ROS       {graph}",
-            f"Teacher   {describe_urls('http', place.address, place.port, '/teacher/', folder.teacher_token)}",
-            f"Pupils    {describe_urls('http', place.address, place.port, '/')}, code {folder.room_code}",
-            f"Places    {len(numbers)}; the teacher's page has a QR code for the room, and a link for each pupil",
+            f"Teacher   {describe_urls(*at, '/teacher/', folder.teacher_token)}",
+            f"Pupils    {pupils}",
+            f"Places    {len(numbers)}; the teacher's page has {room}a link for each pupil",
             f"Access    {access}",
             f"Programs  {kept}",
             "Stop      Ctrl-C",
@@ -190,6 +196,12 @@ def _parser() -> argparse.ArgumentParser:
         default=PORT,
         help="port of the class, for the teacher and all pupils (default: %(default)s)",
     )
+    parser.add_argument(
+        "--links-only",
+        action="store_true",
+        help="no code of the room: pupils enter by their own links only, so that no one can choose another name",
+    )
+    add_certificate_options(parser, "the class speaks")
     add_proxy_option(parser)
     add_graph_options(parser, default="the embedded graph, which takes half of the machine")
     parser.add_argument(

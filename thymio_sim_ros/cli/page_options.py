@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import ssl
 
 from thymio_sim_ros.access.tokens import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
 from thymio_sim_ros.access.visitor import ProxyError, TrustedProxies
@@ -13,7 +14,14 @@ from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.servers import add_server_options, address_argument, port_argument
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
-__all__ = ["add_page_options", "add_proxy_option", "check_certificate", "check_port", "given_tokens"]
+__all__ = [
+    "add_certificate_options",
+    "add_page_options",
+    "add_proxy_option",
+    "check_port",
+    "given_certificate",
+    "given_tokens",
+]
 
 
 def add_page_options(parser: argparse.ArgumentParser) -> None:
@@ -52,19 +60,24 @@ def add_page_options(parser: argparse.ArgumentParser) -> None:
         help="port of the bridge, as Foxglove expects it (default: %(default)s); the bridge is on the page's port, too",
     )
     parser.add_argument("--no-foxglove-port", action="store_true", help="bridge and page on the page's port only")
-    parser.add_argument(
-        "--certificate",
-        default=SuiteConfig.certificate,
-        metavar="FILE",
-        help="PEM file with a certificate, with which page and bridge speak https and wss on their ports",
-    )
-    parser.add_argument(
-        "--key", default=SuiteConfig.key, metavar="FILE", help="PEM file with its private key, unless the first has it"
-    )
+    add_certificate_options(parser, "page and bridge speak")
     add_proxy_option(parser)
     add_server_options(parser)
     parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
     parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
+
+
+def add_certificate_options(parser: argparse.ArgumentParser, use: str) -> None:
+    """Add the options for TLS; `use` is the begin of "… https", for the help."""
+    parser.add_argument(
+        "--certificate",
+        default=SuiteConfig.certificate,
+        metavar="FILE",
+        help=f"PEM file with a certificate, with which {use} https and wss",
+    )
+    parser.add_argument(
+        "--key", default=SuiteConfig.key, metavar="FILE", help="PEM file with its private key, unless the first has it"
+    )
 
 
 def add_proxy_option(parser: argparse.ArgumentParser) -> None:
@@ -125,12 +138,11 @@ def check_port(address: str, port: int, server: str, option: str) -> None:
         raise UsageError(f"port {port} of {server}: {error.strerror}; choose another with {options}") from error
 
 
-def check_certificate(certificate: str, key: str) -> None:
-    """Raise UsageError for files with which no client could connect."""
-    if key and not certificate:
+def given_certificate(options: argparse.Namespace) -> ssl.SSLContext | None:
+    """The context of the options for TLS; None without. Raises UsageError for files with which no client connects."""
+    if options.key and not options.certificate:
         raise UsageError("--key: expected --certificate, too")
     try:
-        if certificate:
-            tls_context(certificate, key)
+        return tls_context(options.certificate, options.key) if options.certificate else None
     except TlsError as error:
         raise UsageError(f"--certificate: {error}") from error

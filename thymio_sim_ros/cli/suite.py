@@ -26,7 +26,7 @@ from thymio_sim_ros.cli.options import (
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
-from thymio_sim_ros.cli.page_options import add_page_options, check_certificate, check_port, given_tokens
+from thymio_sim_ros.cli.page_options import add_page_options, check_port, given_certificate, given_tokens
 from thymio_sim_ros.cli.ros.graph_choice import add_graph_options, choose_graph, describe_graph
 from thymio_sim_ros.cli.servers import Servers, select_servers
 from thymio_sim_ros.engine.replay import LoggedRun, last_run
@@ -135,7 +135,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         raise UsageError(f"--replay: found {excluded}; these come from the run log, expected none of them")
     if options.no_foxglove_port and options.no_web:
         raise UsageError("--no-foxglove-port: found --no-web, expected the port of the page for the bridge")
-    check_certificate(options.certificate, options.key)
+    given_certificate(options)
     has_none = options.robot or options.replay is not None
     return SuiteConfig(
         playground=options.playground,

@@ -301,11 +301,16 @@ class HttpConnections:
 
 
 async def serve_connections(
-    listeners: Iterable[socket], answer: Handler, max_connections: int, report: Report, stop: asyncio.Event
+    listeners: Iterable[socket],
+    answer: Handler,
+    max_connections: int,
+    report: Report,
+    stop: asyncio.Event,
+    tls: ssl.SSLContext | None = None,
 ) -> None:
-    """Serve on listening sockets until `stop` is set; open connections are closed then."""
+    """Serve on listening sockets, with TLS if there is a context, until `stop` is set; connections are closed then."""
     connections = HttpConnections(answer, max_connections, report, asyncio.get_running_loop())
-    connections.accept(listeners)
+    connections.accept(listeners, tls)
     try:
         await stop.wait()
     finally:

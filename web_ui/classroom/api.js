@@ -20,7 +20,7 @@
  * @property {string} link
  * @property {string} watch       link to watch only
  */
-/** @typedef {{ pupils: Pupil[], shown: string | null }} ClassState */
+/** @typedef {{ pupils: Pupil[], shown: string | null, has_room: boolean }} ClassState   has_room: whether pupils can choose their names */
 
 /** @typedef {{ address: string, code: string, url: string, qr: string }} Room */
 

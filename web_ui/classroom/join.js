@@ -1,5 +1,5 @@
 // The first page of a class (docs/classroom.md): pupils enter the code of the room, or have it in the link of its QR code,
-// and choose their names, which lead to their own pages.
+// and choose their names, which lead to their own pages. In a class with links only there is no code.
 
 import { resolveToken } from "../browser/access_token.js";
 import { localStore } from "../browser/local_storage.js";
@@ -19,6 +19,20 @@ const REFUSALS = { 401: "join.wrong", 429: "join.wait" };
 /** A code as pupils type it: in upper or lower case, with spaces. @param {string} typed */
 export function codeOf(typed) {
   return typed.replace(/\s/g, "").toLowerCase();
+}
+
+/**
+ * Whether a class has a code with which pupils choose their names; null if it does not answer.
+ *
+ * @returns {Promise<boolean | null>}
+ */
+export async function hasCode() {
+  try {
+    const answer = await fetch("room");
+    return answer.ok ? (await answer.json()).has_code : null;
+  } catch {
+    return null;
+  }
 }
 
 /**
@@ -48,10 +62,15 @@ class JoinPage {
 
   /** Show the names, or ask for the code. @param {string} code  "": none is known */
   async open(code) {
+    if ((await hasCode()) === false) return this.#showLinksOnly();
     const places = code === "" ? "" : await placesOf(code);
     if (typeof places !== "string") return this.#showNames(places);
     this.#askForCode(places);
     if (places === "connection.lost") setTimeout(() => void this.open(code), RETRY_MS);
+  }
+
+  #showLinksOnly() {
+    this.main.replaceChildren(h("div", { class: "card join-code" }, h("p", {}, this.t("join.links"))));
   }
 
   /** @param {readonly Place[]} places */

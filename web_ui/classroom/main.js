@@ -40,6 +40,7 @@ class TeacherPage {
     /** @type {Map<string, PupilCard>} */ this.cards = new Map();
     /** @type {{ id: string, draw: ReturnType<typeof present> } | null} */ this.presented = null;
     this.onlyHelp = false;
+    this.hasRoom = false;
     this.t = translator(language.language, texts);
     this.parts = this.#build();
   }
@@ -70,6 +71,7 @@ class TeacherPage {
     const filters = [this.#filter("all", false), this.#filter("help", true)];
     const empty = h("p", { class: "muted", hidden: true }, t("empty"));
     const list = h("ul", { class: "pupils", "aria-label": t("title") });
+    const room = this.#button("room", "class", async () => showRoom(await this.api.room(), t));
     const bar = h(
       "div",
       { class: "row class-bar" },
@@ -79,12 +81,12 @@ class TeacherPage {
       this.#button("runAll", "run", () => this.api.pause(null, false)),
       this.#button("messageAll", "message", () => this.#message(null)),
       this.#button("collect", "save", () => this.#collect()),
-      this.#button("room", "class", async () => showRoom(await this.api.room(), t)),
+      room,
       this.#button("sheet", "list", () => this.#sheet()),
     );
     const missing = h("p", { class: "note-box wait class-missing", role: "status", hidden: true });
     byId("main").replaceChildren(trouble, bar, missing, empty, list);
-    return { count, trouble, filters, missing, empty, list };
+    return { count, trouble, filters, room, missing, empty, list };
   }
 
   /** @param {string} name @param {boolean} onlyHelp */
@@ -117,6 +119,7 @@ class TeacherPage {
       setText(count, String(onlyHelp ? pupils.filter(needsHelp).length : pupils.length));
     }
     const shown = this.onlyHelp ? pupils.filter(needsHelp) : pupils;
+    parts.room.hidden = !this.hasRoom;
     parts.empty.hidden = shown.length > 0 || pupils.length === 0;
     const elements = shown.map((pupil) => this.#card(pupil, t).element);
     const { children } = parts.list;
@@ -177,8 +180,9 @@ class TeacherPage {
   }
 
   async #refresh() {
-    const { pupils } = await this.api.state();
+    const { pupils, has_room } = await this.api.state();
     this.pupils = pupils;
+    this.hasRoom = has_room;
     for (const { plan } of pupils) if (!this.asked.has(plan)) void this.#loadPlan(plan);
     this.render();
   }

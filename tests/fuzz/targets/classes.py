@@ -10,7 +10,7 @@ import zipfile
 from collections.abc import Iterator
 from functools import cache
 
-from tests.classroom.test_requests import OPTIONS, URL
+from tests.classroom.test_requests import OPTIONS, PLACE, PUPIL
 from tests.fuzz.target import FOLDER, Target, lines, text
 from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.bridge.protocol.wire import data_head
@@ -59,7 +59,7 @@ def _classroom() -> Classroom:
 def _request(data: bytes) -> None:
     """A request with the token of the teacher."""
     name, body = lines(data, 2)
-    asyncio.run(answer(_classroom(), "POST", name.decode("latin-1"), body, URL))
+    asyncio.run(answer(_classroom(), PLACE, PUPIL, "POST", name.decode("latin-1"), body))
 
 
 def _suite(data: bytes) -> None:

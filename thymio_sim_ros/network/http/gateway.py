@@ -130,7 +130,7 @@ class Gateway:
                     self._fail((network, node), "the node has left the network")
 
     def advance(self, now_ns: int) -> None:
-        """Advance the time, at least every 0.1 s."""
+        """Advance the time: at least every 0.1 s while requests wait, and before a request."""
         self._now_ns = now_ns
         for network, client in self._nodes.clients.items():
             for report in client.advance(now_ns):

@@ -46,7 +46,8 @@ MAX_QUEUED_EVENTS = 1000
 """Events that wait for a client of a stream; the stream of a client that does not read them is closed."""
 MAX_COMPILATIONS = 8
 """Programs that are compiled or wait for it; further ones are rejected."""
-_ADVANCE_S = 0.1
+_ADVANCE_S, _IDLE_S = 0.1, 0.5
+"""Time between two looks at what is due, with requests that wait and without: a class has thirty of these servers."""
 _ALLOW = "GET, POST, PUT, OPTIONS"
 
 
@@ -142,7 +143,7 @@ class HttpServer:
         while True:
             self._gateway.advance(self._now_ns())
             self._flush()
-            await asyncio.sleep(_ADVANCE_S)
+            await asyncio.sleep(_ADVANCE_S if self._gateway.waiting else _IDLE_S)
 
     def _now_ns(self) -> int:
         return int(self._loop.time() * 1e9)
@@ -182,6 +183,7 @@ class HttpServer:
 
     async def _carry_out(self, action: Action) -> Reply:
         result: asyncio.Future[Reply] = self._loop.create_future()
+        self._gateway.advance(self._now_ns())  # its time-outs begin now
 
         def reply(found: Reply) -> None:
             if not result.done():
