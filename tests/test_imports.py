@@ -137,7 +137,7 @@ RULES = {
         frozenset({"pyarrow"}),
         NO_WALL_CLOCK - {"time"},
     ),
-    f"{OURS}.missions": Rule(_names("device.programs", "engine", "missions", "sim"), never=NO_WALL_CLOCK),
+    f"{OURS}.missions": Rule(_names("device.programs", "engine", "files", "missions", "sim"), never=NO_WALL_CLOCK),
     f"{OURS}.rl": Rule(_names("engine", "files", "rl", "sim"), frozenset({"gymnasium", "numpy"}), NO_WALL_CLOCK),
     f"{OURS}.rl.parallel_env": Rule(_names("rl"), frozenset({"gymnasium", "numpy", "pettingzoo"}), NO_WALL_CLOCK),
     f"{OURS}.testing": Rule(_names("device", "engine", "files", "missions", "sim", "testing"), frozenset({"pytest"})),

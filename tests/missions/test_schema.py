@@ -11,9 +11,10 @@ import pytest
 from thymio_sim_ros.missions import load_mission
 from thymio_sim_ros.missions.schema import schema
 
-COURSE = Path(__file__).parents[2] / "docs" / "course"
+ROOT = Path(__file__).parents[2]
+COURSE = ROOT / "docs" / "course"
 MISSIONS = sorted(COURSE.glob("*/mission.json"))
-SCHEMA = json.loads((COURSE / "mission.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((ROOT / "missions" / "mission.schema.json").read_text(encoding="utf-8"))
 
 
 def test_the_published_schema_is_valid_and_the_one_of_the_reader() -> None:

@@ -5,15 +5,18 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from aseba_vm.languages import LANGUAGES
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.options import check_files, path_argument
+from thymio_sim_ros.cli.options import check_files
 from thymio_sim_ros.cli.output import print_json, print_text
 from thymio_sim_ros.device.layout import THYMIO
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.files.loading import NO_PROGRAM
+from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.missions import Judge, Mission, MissionError, Verdict, load_mission
+from thymio_sim_ros.missions.shipped import Step, find_mission, index, shipped
 from thymio_sim_ros.sim.model.fields import FieldError
 
 __all__ = ["run"]
@@ -26,15 +29,56 @@ _STAR, _NO_STAR = "★", "☆"
 def run(argv: Sequence[str]) -> int:
     """Judge the program; return the exit code. Raises UsageError for rejected input."""
     options = _parser().parse_args(argv)
-    mission = _mission(options.mission)
+    if options.list:
+        print_json(_index()) if options.json else print_text(_list(options.language))
+        return 0
+    if options.mission is None:
+        raise UsageError("mission: found no mission, expected the name of one (--list) or a file (docs/missions.md)")
+    path = _found(options.mission)
+    mission = _mission(path)
     try:
         judge = _judge(mission, options.program, options.seed)
     except FieldError as error:
-        raise UsageError(str(MissionError(str(options.mission), error))) from error
+        raise UsageError(str(MissionError(str(path), error))) from error
     print_json(_result(mission, judge)) if options.json else print_text(
         _report(mission, judge.verdict, options.language)
     )
     return 0 if judge.verdict.is_passed else NOT_PASSED
+
+
+def _shipped() -> tuple[Step, ...]:
+    try:
+        return shipped()
+    except (MissionError, OSError, ValueError) as error:
+        raise UsageError(f"the installed missions: {error}; install the package again") from error
+
+
+def _index() -> dict[str, Any]:
+    _shipped()
+    return index()
+
+
+def _list(language: str) -> str:
+    """The shipped missions in steps: name, number of stars, languages of programs, title."""
+    lines = []
+    for number, step in enumerate(_shipped(), start=1):
+        lines.append(f"{number} {step.titles.get(language, step.titles['en'])}")
+        for each in step.missions:
+            stars = _NO_STAR * (1 + len(each.mission.stars))
+            titles = each.mission.titles
+            lines.append(
+                f"  {each.name:<12} {stars:<3} {titles.get(language, titles['en'])}"
+                f" ({', '.join(each.mission.languages)})"
+            )
+    return "\n".join(lines)
+
+
+def _found(name: str) -> Path:
+    try:
+        _shipped()
+        return find_mission(name)
+    except ResourceError as error:
+        raise UsageError(str(error)) from error
 
 
 def _mission(path: Path) -> Mission:
@@ -97,7 +141,9 @@ def _parser() -> argparse.ArgumentParser:
         epilog="exit code: 0 passed; 1 not passed; 2 rejected input",
         allow_abbrev=False,
     )
-    parser.add_argument("mission", type=path_argument, metavar="FILE", help="the mission (docs/missions.md)")
+    about = "a shipped mission, or a file (docs/missions.md)"
+    parser.add_argument("mission", nargs="?", metavar="MISSION", help=about)
+    parser.add_argument("--list", action="store_true", help="list the shipped missions, with --json as JSON")
     parser.add_argument("--program", default=NO_PROGRAM, metavar="FILE", help="program of the robot (default: none)")
     parser.add_argument("--seed", type=int, default=0, help="seed of the noise (default: %(default)s)")
     parser.add_argument("--language", choices=LANGUAGES, default="en", help="of the mission's texts (default: en)")

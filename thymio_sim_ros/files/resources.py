@@ -1,4 +1,4 @@
-"""Finds the files that are installed with the code: playgrounds, behaviors, the built page.
+"""Finds the files that are installed with the code: playgrounds, missions, behaviors, the built page.
 
 The same search works in a source tree, a wheel, an editable installation and a colcon workspace: first the source
 tree, then `share/thymio_sim_ros` beside the installed code, then the ament prefixes, then the prefix of the interpreter
@@ -53,6 +53,11 @@ def playgrounds() -> dict[str, Path]:
     """Files of the shipped playgrounds by name, then those of other packages, each in order of name."""
     folder = _folder("playgrounds")
     return _files([folder] if folder else [], "playgrounds", _PLAYGROUND_FILES)
+
+
+def missions_folder() -> Path | None:
+    """Folder of the shipped missions, or None if they are not installed."""
+    return next((root / "missions" for root in _roots() if (root / "missions" / "index.json").is_file()), None)
 
 
 def behaviours() -> dict[str, Path]:

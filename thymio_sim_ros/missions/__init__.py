@@ -7,6 +7,7 @@ file_fields   fields and limits of a file
 reader        reads a file; errors name the field
 schema        the JSON schema of files, for editors
 judge         a mission and an engine: checklist, stars, reasons
+shipped       the missions that are installed with the code, in order
 lengths       how long a program is, in the unit of its language
 """
 

@@ -44,6 +44,7 @@ class Head:
     title: Text
     playground: FileName
     story: Text = ""
+    picture: FileName = ""
     robot: RobotName = ""
     time_s: Seconds = 120.0
     next: FileName = ""

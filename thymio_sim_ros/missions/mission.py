@@ -64,6 +64,8 @@ class Mission:
     success: object
     failure: object = None
     story: str = ""
+    picture: str = ""
+    """Path of a picture for lists."""
     robot: str = ""
     """The robot that the pupil programs; "" is the first one of the playground."""
     languages: tuple[str, ...] = PROGRAM_LANGUAGES
@@ -78,6 +80,12 @@ class Mission:
     next: str = ""
     """Path of the mission after this one."""
     translations: Mapping[str, Texts] = field(default_factory=dict)
+
+    @property
+    def titles(self) -> dict[str, str]:
+        """The title by language."""
+        others = {language: texts.title for language, texts in self.translations.items() if texts.title}
+        return {"en": self.title} | others
 
     def text_of(self, fact: str, language: str = "") -> str:
         """The text of a fact in a language, or else its own, or else its name."""

@@ -99,6 +99,7 @@ def _mission(data: object, folder: Path) -> Mission:
         success=success,
         failure=failure,
         story=head.story,
+        picture=_beside(folder, head.picture) if head.picture else "",
         robot=head.robot,
         languages=languages,
         programs=programs,
