@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from aseba_vm.languages import LANGUAGES
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.options import check_files
 from thymio_sim_ros.cli.output import print_json, print_text
-from thymio_sim_ros.device.layout import THYMIO
-from thymio_sim_ros.engine.engine import Engine
+from thymio_sim_ros.course_packages import field_checks
+from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.files.loading import NO_PROGRAM
 from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.missions import Judge, Mission, MissionError, Verdict, load_mission
+from thymio_sim_ros.missions.facts import Measured
 from thymio_sim_ros.missions.shipped import Step, find_mission, index, shipped
+from thymio_sim_ros.missions.trial import judged_run
+from thymio_sim_ros.portable_ros import import_hook
 from thymio_sim_ros.sim.model.fields import FieldError
 
 __all__ = ["run"]
 
 NOT_PASSED = 1
+_NODE = ".py"
 _DONE, _OPEN = "[x]", "[ ]"
 _STAR, _NO_STAR = "★", "☆"
 
@@ -36,14 +42,34 @@ def run(argv: Sequence[str]) -> int:
         raise UsageError("mission: found no mission, expected the name of one (--list) or a file (docs/missions.md)")
     path = _found(options.mission)
     mission = _mission(path)
-    try:
-        judge = _judge(mission, options.program, options.seed)
-    except FieldError as error:
-        raise UsageError(str(MissionError(str(path), error))) from error
-    print_json(_result(mission, judge)) if options.json else print_text(
-        _report(mission, judge.verdict, options.language)
-    )
+    if options.check:
+        return _check(mission, path, options.seed)
+    judge = _judge(mission, path, options.program, options.seed)
+    print_json(_result(mission, judge)) if options.json else print_text(_report(mission, judge, options.language))
     return 0 if judge.verdict.is_passed else NOT_PASSED
+
+
+def _check(mission: Mission, path: Path, seed: int) -> int:
+    """Run solutions and start programs, and print what they get: a solution has all stars, a start does not pass."""
+    named = {"playground": mission.playground, "picture": mission.picture, "next": mission.next}
+    files = {key: name for key, name in named.items() if Path(name).suffix}
+    mistakes = [f"{path}: {key}: found no file {name}" for key, name in files.items() if not Path(name).is_file()]
+    lines = []
+    runs = [("solutions", *each) for each in mission.solutions.items()]
+    runs += [("programs", *each) for each in mission.programs.items()]
+    for group, language, program in runs:
+        verdict = _judge(mission, path, program, seed).verdict
+        lines.append(f"{group}.{language}: {_stars(verdict)} {verdict.state.value} after {verdict.at_s:.2f} s")
+        if group == "programs" and verdict.is_passed:
+            mistakes.append(f"{path}: programs.{language}: found a start that passes, expected something to do")
+        elif group == "solutions" and not all(verdict.stars):
+            found = f"{sum(verdict.stars)} of {len(verdict.stars)} stars"
+            mistakes.append(f"{path}: solutions.{language}: found {found}, expected all of them")
+    if not mission.solutions:
+        _judge(mission, path, NO_PROGRAM, seed)  # refuses wrong names and zones
+        lines.append("no solutions: whether it can be passed is not checked")
+    print_text("\n".join([*lines, *mistakes]))
+    return NOT_PASSED if mistakes else 0
 
 
 def _shipped() -> tuple[Step, ...]:
@@ -90,34 +116,67 @@ def _mission(path: Path) -> Mission:
         raise UsageError(f"{path}: {error.strerror}; expected a mission file (docs/missions.md)") from error
 
 
-def _judge(mission: Mission, program: str, seed: int) -> Judge:
-    """The judge of a whole run."""
-    playground, assignments = check_files(mission.playground, program, "", THYMIO)
-    robot = mission.robot or next((start.name for start in playground.robots), "")
-    programs = {name: found.program for name, found in assignments.items() if found.program is not None}
-    engine = Engine(playground, {name: one for name, one in programs.items() if name == robot}, seed=seed)
-    judge = Judge(mission, engine)
-    while not judge.is_over:
-        engine.step(())
-        judge.tick()
-    return judge
+def _judge(mission: Mission, path: Path, program: str, seed: int) -> Judge:
+    """The judge of a whole run of an Aseba program, or of a ROS node in Python."""
+    try:
+        if program.endswith(_NODE):
+            return _judged_node(mission, Path(program), seed)
+        return judged_run(mission, program, seed=seed)
+    except FieldError as error:
+        raise UsageError(str(MissionError(str(path), error))) from error
+    except UsageError:
+        raise
+    except (ThymioSimError, OSError) as error:
+        raise UsageError(str(error)) from error
 
 
-def _report(mission: Mission, verdict: Verdict, language: str) -> str:
-    title = mission.translations[language].title if language in mission.translations else ""
-    lines = [title or mission.title]
+def _judged_node(mission: Mission, program: Path, seed: int) -> Judge:
+    """The judge of a node on the embedded graph, also where a ROS is installed."""
+    if not program.is_file():
+        raise UsageError(f"{program}: found no such file, expected a ROS node in Python")
+    field_checks.switch_on()
+    import_hook.install(is_forced=True)
+    course_packages.add_to_path()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # lark, imported with the first messages
+        try:
+            from thymio_sim_ros.testing.ros.mission import judged_node
+        except ModuleNotFoundError as error:
+            if error.name != "pytest":
+                raise
+            raise UsageError(f"{program}: nodes are judged with pytest; install it: pip install pytest") from error
+    return judged_node(mission, program, seed=seed)
+
+
+def _stars(verdict: Verdict) -> str:
+    return "".join(_STAR if has else _NO_STAR for has in verdict.stars)
+
+
+def _report(mission: Mission, judge: Judge, language: str) -> str:
+    verdict, measured = judge.verdict, judge.measured()
+    lines = [mission.titles.get(language, mission.title)]
     for item in verdict.checklist:
         texts = ", ".join(mission.text_of(fact, language) for fact in item.facts)
         lines.append(f"{_DONE if item.is_done else _OPEN} {texts}")
-    stars = "".join(_STAR if has else _NO_STAR for has in verdict.stars)
+    lines += [
+        f"{_STAR if has else _NO_STAR} {mission.star_text(number, language)}"
+        for number, has in enumerate(verdict.stars[1:])
+    ]
     if verdict.is_passed:
-        lines.append(f"{stars} passed after {verdict.at_s:.2f} s")
+        lines.append(f"{_stars(verdict)} passed after {verdict.at_s:.2f} s")
     else:
-        broken = ", ".join(mission.text_of(fact, language) for fact in verdict.broken)
-        lines.append(f"{stars} not passed: {broken or 'time is over'}, after {verdict.at_s:.2f} s")
+        broken = ", ".join(mission.missing_text(fact, language) for fact in verdict.broken)
+        lines.append(f"{_stars(verdict)} not passed: {broken or 'time is over'}, after {verdict.at_s:.2f} s")
+        lines += [
+            f"Missing: {mission.missing_text(fact, language)}{_amount(measured.get(fact))}" for fact in judge.missing()
+        ]
         if hint := mission.hint(0, language):
             lines.append(f"Hint: {hint}")
     return "\n".join(lines)
+
+
+def _amount(found: Measured | None) -> str:
+    return "" if found is None else f" ({found.value:.3g} of {found.goal:g} {found.unit}".rstrip() + ")"
 
 
 def _result(mission: Mission, judge: Judge) -> dict[str, object]:
@@ -129,6 +188,8 @@ def _result(mission: Mission, judge: Judge) -> dict[str, object]:
         "stars": sum(verdict.stars),
         "checklist": [{"facts": list(item.facts), "done": item.is_done} for item in verdict.checklist],
         "broken": list(verdict.broken),
+        "missing": [] if verdict.is_passed else list(judge.missing()),
+        "measured": {name: asdict(found) for name, found in judge.measured().items()},
         "trace": [[round(x, 4), round(y, 4)] for x, y in judge.trace],
     }
 
@@ -144,7 +205,11 @@ def _parser() -> argparse.ArgumentParser:
     about = "a shipped mission, or a file (docs/missions.md)"
     parser.add_argument("mission", nargs="?", metavar="MISSION", help=about)
     parser.add_argument("--list", action="store_true", help="list the shipped missions, with --json as JSON")
-    parser.add_argument("--program", default=NO_PROGRAM, metavar="FILE", help="program of the robot (default: none)")
+    parser.add_argument(
+        "--program", default=NO_PROGRAM, metavar="FILE", help="program of the robot, or a ROS node (.py); default: none"
+    )
+    about = "run the solutions and start programs of the mission: solutions get all stars, a start does not pass"
+    parser.add_argument("--check", action="store_true", help=about)
     parser.add_argument("--seed", type=int, default=0, help="seed of the noise (default: %(default)s)")
     parser.add_argument("--language", choices=LANGUAGES, default="en", help="of the mission's texts (default: en)")
     parser.add_argument("--json", action="store_true", help="print the result as JSON, with the way of the robot")

@@ -3,10 +3,13 @@
 facts         what is true or false in a tick: words of mission files
 conditions    facts combined: all, any, not, once, then, hold, at most
 mission       the values of a file
+files         the files beside a mission, or those of a zip
+free_zones    whether a robot can be in the zones
 file_fields   fields and limits of a file
 reader        reads a file; errors name the field
 schema        the JSON schema of files, for editors
 judge         a mission and an engine: checklist, stars, reasons
+trial         a whole run of a program
 shipped       the missions that are installed with the code, in order
 lengths       how long a program is, in the unit of its language
 """

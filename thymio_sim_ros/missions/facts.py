@@ -11,8 +11,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Protocol
 
+from thymio_sim_ros.device.programs.program import ThymioProgram
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.missions.zones import Zone
+from thymio_sim_ros.sim.actuators.comm import FULL_PAYLOAD, CommState
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.loudspeaker import LoudspeakerState
 from thymio_sim_ros.sim.commands import COLORED_GROUPS, LED_COLORS
@@ -22,10 +24,29 @@ from thymio_sim_ros.sim.model.geometry import wrap_angle
 from thymio_sim_ros.sim.playground.track_line import EVERY, SENSOR_OFFSET_M, TrackLine, TrackProgress
 from thymio_sim_ros.sim.robot.robot import Robot
 
-__all__ = ["FACTS", "Fact", "Scene", "Watch"]
+__all__ = ["FACTS", "Fact", "Measured", "Scene", "Watch"]
 
-Watch = Callable[[], bool]
-"""Whether a fact is true now; called once in each tick."""
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """How far a fact is: a value now, the value from which it is true, and their unit ("" is a plain number)."""
+
+    value: float
+    goal: float
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Watch:
+    """A fact that is bound to an engine.
+
+    `is_true` is called once in each tick. `measure` says how far it is, None while the robot is not there; facts
+    that are no quantities have none.
+    """
+
+    is_true: Callable[[], bool]
+    measure: Callable[[], Measured | None] | None = None
+
 
 _STILL_M_S, _STILL_RAD_S = 0.001, 0.01
 _LIGHT_TOLERANCE = 4
@@ -39,6 +60,10 @@ Meters = Annotated[float, Number("m", 0.0, 1000.0)]
 Speed = Annotated[float, Number("m/s", 0.0, 1.0)]
 Degrees = Annotated[float, Number("degrees", -360.0, 360.0)]
 Width = Annotated[float, Number("degrees", 0.0, 180.0)]
+Loudness = Annotated[float, Number("of mic.intensity", 0.0, 255.0)]
+Payload = Annotated[float, Number("of prox.comm.tx", 0.0, FULL_PAYLOAD)]
+Short = Annotated[float, Number("of a variable", -32768.0, 32767.0)]
+Index = Annotated[float, Number("place in an array", 0.0, 1000.0)]
 Laps = Annotated[float, Number("laps", 0.0, 100.0)]
 
 
@@ -54,14 +79,32 @@ class Scene:
         """The robot, None while it is not in the world."""
         return self.engine.world.robots.get(self.robot)
 
-    def when_present(self, check: Callable[[Robot], bool]) -> Watch:
-        """A check of the robot that is false while it is not there."""
+    def when_present(self, check: Callable[[Robot], bool], measure: Callable[[Robot], Measured] | None = None) -> Watch:
+        """A check of the robot that is false while it is not there, and its measure."""
 
-        def watch() -> bool:
+        def is_true() -> bool:
             robot = self.present()
             return robot is not None and check(robot)
 
-        return watch
+        if measure is None:
+            return Watch(is_true)
+        return Watch(is_true, lambda: None if (robot := self.present()) is None else measure(robot))
+
+    def variable(self, name: str) -> Callable[[], tuple[int, ...]]:
+        """A function that reads a variable of the robot's program; empty if there is none, or no program."""
+        program: ThymioProgram | None = None
+        is_there = False
+
+        def read() -> tuple[int, ...]:
+            nonlocal program, is_there
+            host = self.engine.hosts.get(self.robot)
+            if host is None:
+                return ()
+            if host.program is not program:
+                program, is_there = host.program, name in host.device.variables.addresses()
+            return host.device.variables.get(name) if is_there else ()
+
+        return read
 
 
 class Fact(Protocol):
@@ -151,7 +194,10 @@ class Faster:
 
     def watch(self, scene: Scene) -> Watch:
         """Bind it to an engine."""
-        return scene.when_present(lambda robot: abs(robot.twist.linear_m_s) > self.speed_m_s)
+        return scene.when_present(
+            lambda robot: abs(robot.twist.linear_m_s) > self.speed_m_s,
+            lambda robot: Measured(abs(robot.twist.linear_m_s), self.speed_m_s, "m/s"),
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +210,10 @@ class Heading:
     def watch(self, scene: Scene) -> Watch:
         """Bind it to an engine."""
         wanted, tolerance = math.radians(self.direction_deg), math.radians(self.tolerance_deg)
-        return scene.when_present(lambda robot: abs(wrap_angle(robot.pose.yaw_rad - wanted)) <= tolerance)
+        return scene.when_present(
+            lambda robot: abs(wrap_angle(robot.pose.yaw_rad - wanted)) <= tolerance,
+            lambda robot: Measured(math.degrees(wrap_angle(robot.pose.yaw_rad)), self.direction_deg, "°"),
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,7 +242,7 @@ class Driven:
             last = now
             return covered >= self.distance_m
 
-        return scene.when_present(has_driven)
+        return scene.when_present(has_driven, lambda _: Measured(covered, self.distance_m, "m"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,8 +254,10 @@ class Lap:
 
     def watch(self, scene: Scene) -> Watch:
         """Bind it to an engine."""
-        sampled = _progress(scene, self.track)
-        return scene.when_present(lambda robot: sampled(robot).laps >= self.laps)
+        sampled, progress = _progress(scene, self.track)
+        return scene.when_present(
+            lambda robot: sampled(robot).laps >= self.laps, lambda _: Measured(progress.laps, self.laps, "")
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,7 +268,7 @@ class OffLine:
 
     def watch(self, scene: Scene) -> Watch:
         """Bind it to an engine."""
-        sampled = _progress(scene, self.track)
+        sampled, _ = _progress(scene, self.track)
         limit_m = TrackLine.of(scene.engine.world.playground, self.track)[1].width_m / 2 + SENSOR_OFFSET_M
         return scene.when_present(lambda robot: sampled(robot).farthest_m > limit_m)
 
@@ -231,11 +282,82 @@ class Emits:
     def watch(self, scene: Scene) -> Watch:
         """Bind it to an engine."""
         sent = scene.robot, self.event
-        return lambda: any((robot, event.name) == sent for robot, event in scene.engine.emitted)
+        return Watch(lambda: any((robot, event.name) == sent for robot, event in scene.engine.emitted))
 
 
-def _progress(scene: Scene, track: str) -> Callable[[Robot], TrackProgress]:
-    """The progress of the robot along a track, sampled as tests sample it."""
+@dataclass(frozen=True, slots=True)
+class Sends:
+    """The robot sends a message by infrared, or that of a value."""
+
+    value: Payload | None = None
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+
+        def sends(robot: Robot) -> bool:
+            state = robot.state(CommState)
+            return state.is_sending and (self.value is None or state.payload == self.value)
+
+        return scene.when_present(sends)
+
+
+@dataclass(frozen=True, slots=True)
+class Receives:
+    """The last message that the program of the robot has received by infrared is that of a value."""
+
+    value: Payload
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        return _reading(scene, "prox.comm.rx", 0, self.value, self.value)
+
+
+@dataclass(frozen=True, slots=True)
+class Hears:
+    """The microphone of the robot hears a sound, such as a clap, or another robot."""
+
+    loudness: Loudness = 50.0
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        return _reading(scene, "mic.intensity", 0, self.loudness, math.inf)
+
+
+@dataclass(frozen=True, slots=True)
+class Reads:
+    """A variable of the robot's program is in a range: a sensor, or a variable of the pupil."""
+
+    variable: Word
+    index: Index = 0.0
+    at_least: Short = -32768.0
+    at_most: Short = 32767.0
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        if self.at_least > self.at_most:
+            raise FieldError("at_least", f"{self.at_least:g}", f"at most {self.at_most:g}, which is at_most")
+        return _reading(scene, self.variable, round(self.index), self.at_least, self.at_most)
+
+
+def _reading(scene: Scene, variable: str, index: int, low: float, high: float) -> Watch:
+    """A watch of a variable that may not be there: programs differ."""
+    read = scene.variable(variable)
+
+    def is_true() -> bool:
+        words = read()
+        return index < len(words) and low <= words[index] <= high
+
+    def measure() -> Measured | None:
+        words = read()
+        return (
+            Measured(words[index], low if words[index] < low else min(high, 32767), "") if index < len(words) else None
+        )
+
+    return Watch(is_true, measure)
+
+
+def _progress(scene: Scene, track: str) -> tuple[Callable[[Robot], TrackProgress], TrackProgress]:
+    """A function that samples the progress of the robot along a track as tests sample it, and that progress."""
     try:
         line, _ = TrackLine.of(scene.engine.world.playground, track)
     except ValueError as error:
@@ -249,7 +371,7 @@ def _progress(scene: Scene, track: str) -> Callable[[Robot], TrackProgress]:
         ticks += 1
         return progress
 
-    return sampled
+    return sampled, progress
 
 
 FACTS: Mapping[str, type[Fact]] = {
@@ -265,5 +387,9 @@ FACTS: Mapping[str, type[Fact]] = {
     "lap": Lap,
     "off_line": OffLine,
     "emits": Emits,
+    "sends": Sends,
+    "receives": Receives,
+    "hears": Hears,
+    "reads": Reads,
 }
 """The kinds of facts by the word of a mission file."""

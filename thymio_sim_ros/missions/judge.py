@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.missions.conditions import Condition, Facts, names_in, read_condition
-from thymio_sim_ros.missions.facts import Scene, Watch
+from thymio_sim_ros.missions.facts import Measured, Scene, Watch
+from thymio_sim_ros.missions.free_zones import check_zones
 from thymio_sim_ros.missions.lengths import length_of
-from thymio_sim_ros.missions.mission import Mission, Star
+from thymio_sim_ros.missions.mission import Happening, Mission, Star
+from thymio_sim_ros.sim.commands import MoveObject
 from thymio_sim_ros.sim.model.fields import FieldError, join, nearest
 from thymio_sim_ros.sim.model.geometry import Point
+from thymio_sim_ros.sim.playground.placement import PlacementError
 
 __all__ = ["Item", "Judge", "State", "Verdict"]
 
@@ -83,6 +87,11 @@ class _Checklist:
                 break
         return all(self._are_done)
 
+    def open_facts(self) -> tuple[str, ...]:
+        """The facts of the parts that are not done; of the next part, if there is an order."""
+        parts = [facts for facts, is_done in zip(self._facts, self._are_done, strict=True) if not is_done]
+        return tuple(dict.fromkeys(itertools.chain(*(parts[:1] if self._is_ordered else parts))))
+
     def items(self) -> tuple[Item, ...]:
         """The lines of the checklist."""
         return tuple(Item(facts, is_done) for facts, is_done in zip(self._facts, self._are_done, strict=True))
@@ -102,6 +111,8 @@ class Judge:
         self._begin_ns = engine.now_ns
         self._watches: dict[str, Watch] = {name: self._watch(name) for name in mission.facts}
         facts = list(mission.facts)
+        check_zones(mission.zones, engine.world.playground)
+        self._facts: Facts = dict.fromkeys(facts, False)
         self._checklist = _Checklist(mission.success, facts)
         self._failure = None if mission.failure is None else read_condition(mission.failure, "failure", facts)
         self._extras: list[Condition | None] = [
@@ -109,7 +120,7 @@ class Judge:
         ]
         self._happens = list(mission.happens)
         for index, happening in enumerate(self._happens):
-            self._check_robot(happening.robot, f"happens[{index}].robot")
+            self._check_target(happening, f"happens[{index}]")
         self.verdict = Verdict(State.RUNNING, 0.0, self._checklist.items(), (False,) * (1 + len(mission.stars)))
         """What it says now."""
         self.trace: list[Point] = []
@@ -127,7 +138,7 @@ class Judge:
             return
         now_ns = self._engine.now_ns - self._begin_ns
         now_s = now_ns / _SECOND_NS
-        facts = {name: watch() for name, watch in self._watches.items()}
+        facts = self._facts = {name: watch.is_true() for name, watch in self._watches.items()}
         self._note_place()
         extras = [extra is not None and extra.update(facts, now_s) for extra in self._extras]
         is_done = self._checklist.update(facts, now_s)
@@ -142,6 +153,16 @@ class Judge:
         else:
             self.verdict = Verdict(State.RUNNING, now_s, self._checklist.items(), self.verdict.stars)
             self._act(now_s)
+
+    def measured(self) -> dict[str, Measured]:
+        """How far each fact is that is a quantity, by name."""
+        found = {name: watch.measure() for name, watch in self._watches.items() if watch.measure is not None}
+        return {name: value for name, value in found.items() if value is not None}
+
+    def missing(self) -> tuple[str, ...]:
+        """The facts that the checklist lacks now, in order; of an ordered one those of the part that is next."""
+        named = self._checklist.open_facts()
+        return tuple(name for name in named if not self._facts[name]) or named
 
     def _end(self, state: State, now_s: float, extras: Sequence[bool], broken: tuple[str, ...] = ()) -> None:
         further = [
@@ -174,11 +195,25 @@ class Judge:
             raise FieldError(key, f"'{name}'", nearest(name, tuple(self._engine.world.robots)))
         return name
 
+    def _check_target(self, happening: Happening, key: str) -> None:
+        if not isinstance(happening.command, MoveObject):
+            self._check_robot(happening.robot, join(key, "robot"))
+            return
+        names = [solid.name for solid in self._engine.world.playground.solids if solid.load is not None]
+        if happening.robot not in names:
+            raise FieldError(
+                join(key, "move"), f"'{happening.robot}'", f"a movable object: {nearest(happening.robot, names)}"
+            )
+
     def _act(self, now_s: float) -> None:
-        """Do what happens until now; it has its effect in the next tick."""
+        """Do what happens until now; it has its effect in the next tick. A place that is occupied is waited for."""
         while self._happens and self._happens[0].at_s <= now_s:
-            happening = self._happens.pop(0)
-            self._engine.post(happening.robot or self.robot, happening.command)
+            happening = self._happens[0]
+            try:
+                self._engine.post(happening.robot or self.robot, happening.command)
+            except PlacementError:
+                return
+            self._happens.pop(0)
 
     def _note_place(self) -> None:
         robot = self._engine.world.robots.get(self.robot)

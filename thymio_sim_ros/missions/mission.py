@@ -9,7 +9,7 @@ from thymio_sim_ros.missions.facts import Fact
 from thymio_sim_ros.missions.zones import Zone
 from thymio_sim_ros.sim.commands import Command
 
-__all__ = ["PROGRAM_LANGUAGES", "Happening", "Mission", "MissionFact", "Star", "Texts"]
+__all__ = ["PROGRAM_LANGUAGES", "Happening", "Mission", "MissionFact", "Star", "Texts", "Toolbox"]
 
 PROGRAM_LANGUAGES = ("vpl", "blocks", "scratch", "text", "ros")
 """Languages in which pupils program."""
@@ -22,11 +22,13 @@ class MissionFact:
     fact: Fact
     robot: str = ""
     text: str = ""
+    missing: str = ""
+    """Text for a pupil whose robot has not got there; "" is `text`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Happening:
-    """Something that is done to a robot at a simulated time in s."""
+    """Something that is done to a robot, or to an object, at a simulated time in s."""
 
     at_s: float
     robot: str
@@ -51,6 +53,16 @@ class Texts:
     story: str = ""
     hints: tuple[str, ...] = ()
     facts: Mapping[str, str] = field(default_factory=dict)
+    missing: Mapping[str, str] = field(default_factory=dict)
+    stars: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Toolbox:
+    """What the editors offer, as the teacher's file of the page has it (docs/blockly.md)."""
+
+    hide: tuple[str, ...] = ()
+    modes: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +83,11 @@ class Mission:
     languages: tuple[str, ...] = PROGRAM_LANGUAGES
     programs: Mapping[str, str] = field(default_factory=dict)
     """Path of the program with which a pupil starts, by language."""
+    solutions: Mapping[str, str] = field(default_factory=dict)
+    """Path of a program that passes with all stars, by language."""
+    robots: Mapping[str, str] = field(default_factory=dict)
+    """Path or name of the programs of other robots, by robot."""
+    toolbox: Toolbox = Toolbox()
     zones: Mapping[str, Zone] = field(default_factory=dict)
     happens: tuple[Happening, ...] = ()
     time_s: float = 120.0
@@ -91,6 +108,16 @@ class Mission:
         """The text of a fact in a language, or else its own, or else its name."""
         translated = self.translations.get(language, Texts()).facts.get(fact, "")
         return translated or self.facts[fact].text or fact
+
+    def missing_text(self, fact: str, language: str = "") -> str:
+        """What is said of a fact that a pupil has not reached, in a language or else its own."""
+        translated = self.translations.get(language, Texts()).missing.get(fact, "")
+        return translated or self.facts[fact].missing or self.text_of(fact, language)
+
+    def star_text(self, number: int, language: str = "") -> str:
+        """The text of a further star by its number from 0, in a language or else its own."""
+        translated = self.translations.get(language, Texts()).stars
+        return translated[number] if number < len(translated) else self.stars[number].text
 
     def hint(self, number: int, language: str = "") -> str:
         """A hint by its number from 0, in a language or else its own; "" if there is none."""

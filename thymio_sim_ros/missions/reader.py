@@ -21,23 +21,28 @@ from thymio_sim_ros.missions.file_fields import (
     MAX_HAPPENINGS,
     MAX_HINTS,
     MAX_STARS,
+    MAX_TOOLS,
     MAX_ZONES,
     NAME,
+    PROXIMITY,
     FactHead,
     HappeningFields,
     Head,
     StarFields,
     TextFields,
 )
-from thymio_sim_ros.missions.mission import PROGRAM_LANGUAGES, Happening, Mission, MissionFact, Star, Texts
+from thymio_sim_ros.missions.files import MAX_PICTURE_BYTES, Files, is_archive, unpack
+from thymio_sim_ros.missions.mission import PROGRAM_LANGUAGES, Happening, Mission, MissionFact, Star, Texts, Toolbox
 from thymio_sim_ros.missions.zones import ZONES, Zone
-from thymio_sim_ros.sim.commands import Clap, Command, PressButton, Tap
+from thymio_sim_ros.sim.commands import Clap, Command, MoveObject, PressButton, SetProximity, Tap
 from thymio_sim_ros.sim.model.fields import LANGUAGE, FieldError, Text, describe, join, nearest, read
 
 __all__ = ["MissionError", "load_mission"]
 
 MAX_BYTES = 1_000_000
-_ACTIONS = ("press", "release", "tap", "clap")
+_ACTIONS = ("press", "release", "tap", "clap", "hand", "move")
+_NEAR, _AS_MEASURED = 4200, -1
+"""Counts of a proximity sensor with a hand right in front of it, and of one without."""
 
 T = TypeVar("T")
 
@@ -54,21 +59,28 @@ class MissionError(ThymioSimError):
 
 
 def load_mission(path: Path) -> Mission:
-    """Read a mission file. Paths in it start in its folder. Raises MissionError, OSError."""
+    """Read a mission file, or a zip with one and all that it needs; paths in it start in its folder.
+
+    A zip is unpacked into a folder that is there until the process ends. Raises MissionError, OSError.
+    """
     data = path.read_bytes()
     try:
+        files = Files(path.parent)
+        if is_archive(data):
+            inside = unpack(data)
+            data, files = inside.read_bytes(), Files(inside.parent, is_closed=True)
         if len(data) > MAX_BYTES:
             raise FieldError("", f"{len(data)} bytes", f"at most {MAX_BYTES}")
         try:
             found = json.loads(data)
         except (UnicodeDecodeError, ValueError, RecursionError) as error:
             raise FieldError("", str(error), "JSON") from error
-        return _mission(found, path.parent)
+        return _mission(found, files)
     except FieldError as error:
         raise MissionError(str(path), error) from error
 
 
-def _mission(data: object, folder: Path) -> Mission:
+def _mission(data: object, files: Files) -> Mission:
     members = dict(_object(data, ""))
     version = members.pop("format", None)
     if version != FORMAT or isinstance(version, bool):
@@ -80,9 +92,15 @@ def _mission(data: object, folder: Path) -> Mission:
     hints = _texts(members.pop("hints", []), "hints")
     happens = tuple(_happening(*item) for item in _items(members.pop("happens", []), "happens", MAX_HAPPENINGS))
     stars = tuple(_star(*item, facts) for item in _items(members.pop("stars", []), "stars", MAX_STARS))
-    programs = _programs(members.pop("programs", {}), languages, folder)
+    programs = _programs(members.pop("programs", {}), "programs", languages, files)
+    solutions = _programs(members.pop("solutions", {}), "solutions", languages, files)
+    robots = {
+        robot: files.find_or_name(f"robots.{robot}", _text(program, f"robots.{robot}"))
+        for robot, program in _object(members.pop("robots", {}), "robots").items()
+    }
+    toolbox = _toolbox(members.pop("toolbox", {}))
     translations = {
-        language: _translation(texts, f"translations.{language}", facts)
+        language: _translation(texts, f"translations.{language}", facts, len(stars))
         for language, texts in _object(members.pop("translations", {}), "translations").items()
     }
     success, failure = members.pop("success", None), members.pop("failure", None)
@@ -94,21 +112,24 @@ def _mission(data: object, folder: Path) -> Mission:
     head = read(Head, members, "")
     return Mission(
         title=head.title,
-        playground=_beside(folder, head.playground),
+        playground=files.find_or_name("playground", head.playground),
         facts=facts,
         success=success,
         failure=failure,
         story=head.story,
-        picture=_beside(folder, head.picture) if head.picture else "",
+        picture=files.find("picture", head.picture, longest=MAX_PICTURE_BYTES) if head.picture else "",
         robot=head.robot,
         languages=languages,
         programs=programs,
+        solutions=solutions,
+        robots=robots,
+        toolbox=toolbox,
         zones=zones,
         happens=tuple(sorted(happens, key=lambda each: each.at_s)),
         time_s=head.time_s,
         stars=stars,
         hints=hints,
-        next=_beside(folder, head.next) if head.next else "",
+        next=files.find_or_name("next", head.next) if head.next else "",
         translations=translations,
     )
 
@@ -119,8 +140,8 @@ def _zone(data: object, key: str) -> Zone:
 
 def _fact(data: object, key: str) -> MissionFact:
     kind, members = _kind(data, key, FACTS)
-    head = read(FactHead, {name: members.pop(name) for name in ("robot", "text") if name in members}, key)
-    return MissionFact(read(kind, members, key), head.robot, head.text)
+    head = read(FactHead, {name: members.pop(name) for name in ("robot", "text", "missing") if name in members}, key)
+    return MissionFact(read(kind, members, key), head.robot, head.text, head.missing)
 
 
 def _kind(data: object, key: str, kinds: Mapping[str, type[T]]) -> tuple[type[T], dict[str, Any]]:
@@ -142,6 +163,13 @@ def _happening(data: object, key: str) -> Happening:
         command = PressButton(found.press, True)
     elif found.release is not None:
         command = PressButton(found.release, False)
+    elif found.hand is not None:
+        counts = [_NEAR if name == found.hand else _AS_MEASURED for name in PROXIMITY]
+        command = SetProximity(tuple(counts))
+    elif found.move is not None:
+        if found.x_m is None or found.y_m is None:
+            raise FieldError(key, f"'{found.move}' without a place", "x_m and y_m")
+        return Happening(found.at_s, found.move, MoveObject(found.x_m, found.y_m, found.yaw_rad))
     else:
         command = Tap() if found.clap is None else Clap(round(found.clap))
     return Happening(found.at_s, found.robot, command)
@@ -159,27 +187,40 @@ def _star(data: object, key: str, facts: Mapping[str, MissionFact]) -> Star:
     return Star(found.within_s, None if found.length is None else round(found.length), when, found.text)
 
 
-def _translation(data: object, key: str, facts: Mapping[str, MissionFact]) -> Texts:
+def _translation(data: object, key: str, facts: Mapping[str, MissionFact], stars: int) -> Texts:
     if not re.fullmatch(LANGUAGE, key.rpartition(".")[2]):
         raise FieldError(key, describe(key.rpartition(".")[2]), "a language code such as de")
     members = dict(_object(data, key))
     hints = _texts(members.pop("hints", []), join(key, "hints"))
-    texts = {}
-    for name, text in _object(members.pop("facts", {}), join(key, "facts")).items():
-        if name not in facts:
-            raise FieldError(join(join(key, "facts"), name), "an unknown fact", nearest(name, tuple(facts)))
-        texts[name] = _text(text, join(join(key, "facts"), name))
+    texts: dict[str, dict[str, str]] = {"facts": {}, "missing": {}}
+    for group, found in texts.items():
+        for name, text in _object(members.pop(group, {}), join(key, group)).items():
+            place = join(join(key, group), name)
+            if name not in facts:
+                raise FieldError(place, "an unknown fact", nearest(name, tuple(facts)))
+            found[name] = _text(text, place)
+    of_stars = tuple(_text(*item) for item in _items(members.pop("stars", []), join(key, "stars"), stars))
     head = read(TextFields, members, key)
-    return Texts(head.title, head.story, hints, texts)
+    return Texts(head.title, head.story, hints, texts["facts"], texts["missing"], of_stars)
 
 
-def _programs(data: object, languages: Sequence[str], folder: Path) -> dict[str, str]:
+def _programs(data: object, key: str, languages: Sequence[str], files: Files) -> dict[str, str]:
     found = {}
-    for language, name in _object(data, "programs").items():
+    for language, name in _object(data, key).items():
+        place = join(key, language)
         if language not in languages:
-            raise FieldError(f"programs.{language}", "an unknown language", nearest(language, languages))
-        found[language] = _beside(folder, _text(name, f"programs.{language}"))
+            raise FieldError(place, "an unknown language", nearest(language, languages))
+        found[language] = files.find(place, _text(name, place))
     return found
+
+
+def _toolbox(data: object) -> Toolbox:
+    found = {}
+    for word, names in _object(data, "toolbox").items():
+        if word not in ("hide", "modes"):
+            raise FieldError(f"toolbox.{word}", "an unknown key", nearest(word, ("hide", "modes")))
+        found[word] = tuple(_text(*item) for item in _items(names, f"toolbox.{word}", MAX_TOOLS))
+    return Toolbox(**found)
 
 
 def _languages(data: object) -> tuple[str, ...]:
@@ -227,8 +268,3 @@ def _object(data: object, key: str) -> Mapping[str, Any]:
     if not isinstance(data, Mapping):
         raise FieldError(key, describe(data), "an object")
     return data
-
-
-def _beside(folder: Path, name: str) -> str:
-    """The path of a file beside the mission; a name without an ending is that of a shipped one."""
-    return str(folder / name) if Path(name).suffix else name

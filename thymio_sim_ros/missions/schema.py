@@ -12,6 +12,7 @@ from thymio_sim_ros.missions.file_fields import (
     MAX_HAPPENINGS,
     MAX_HINTS,
     MAX_STARS,
+    MAX_TOOLS,
     FactHead,
     HappeningFields,
     Head,
@@ -30,23 +31,30 @@ def schema() -> dict[str, Any]:
     name = {"type": "string"}
     condition = {"$ref": "#/$defs/condition"}
     texts = {"type": "array", "items": name, "maxItems": MAX_HINTS}
+    texts_of_stars = {"type": "array", "items": name, "maxItems": MAX_STARS}
+    by_language = {
+        "type": "object",
+        "properties": dict.fromkeys(PROGRAM_LANGUAGES, name),
+        "additionalProperties": False,
+    }
+    tools = {"type": "array", "items": name, "maxItems": MAX_TOOLS}
     times = {"type": "integer", "minimum": 0, "maximum": MAX_TIMES}
     seconds = {"type": "number", "exclusiveMinimum": 0, "maximum": MAX_SECONDS}
     parts = {"type": "array", "items": condition, "minItems": 1, "maxItems": MAX_PARTS}
     star = json_schema(StarFields)
     star["properties"]["when"] = condition
     translation = json_schema(TextFields)
-    translation["properties"] |= {"hints": texts, "facts": {"type": "object", "additionalProperties": name}}
+    named_texts = {"type": "object", "additionalProperties": name}
+    translation["properties"] |= {"hints": texts, "stars": texts_of_stars, "facts": named_texts, "missing": named_texts}
     head = json_schema(Head)
     head["properties"] |= {
         "format": {"const": FORMAT},
         "$schema": name,
         "languages": {"type": "array", "items": {"enum": list(PROGRAM_LANGUAGES)}, "minItems": 1},
-        "programs": {
-            "type": "object",
-            "properties": dict.fromkeys(PROGRAM_LANGUAGES, name),
-            "additionalProperties": False,
-        },
+        "programs": by_language,
+        "solutions": by_language,
+        "robots": {"type": "object", "additionalProperties": name},
+        "toolbox": {"type": "object", "properties": {"hide": tools, "modes": tools}, "additionalProperties": False},
         "zones": _choices(ZONES, {}),
         "facts": _choices(FACTS, json_schema(FactHead)["properties"]),
         "happens": {"type": "array", "items": json_schema(HappeningFields), "maxItems": MAX_HAPPENINGS},

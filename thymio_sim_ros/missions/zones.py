@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from thymio_sim_ros.sim.model.fields import Angle, Coordinate, Extent
+from thymio_sim_ros.sim.model.spatial_grid import Bounds
 
 __all__ = ["ZONES", "Zone"]
 
@@ -17,6 +18,10 @@ class Zone(Protocol):
 
     def contains(self, x_m: float, y_m: float) -> bool:
         """Whether a point is inside."""
+
+    @property
+    def bounds(self) -> Bounds:
+        """Left, bottom, right, top, in m; it may lie inside of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +41,14 @@ class Rectangle:
         along, across = x * cosine + y * sine, y * cosine - x * sine
         return abs(along) <= self.size_x_m / 2 and abs(across) <= self.size_y_m / 2
 
+    @property
+    def bounds(self) -> Bounds:
+        """Left, bottom, right, top, in m."""
+        cosine, sine = abs(math.cos(self.yaw_rad)), abs(math.sin(self.yaw_rad))
+        half_x = (self.size_x_m * cosine + self.size_y_m * sine) / 2
+        half_y = (self.size_x_m * sine + self.size_y_m * cosine) / 2
+        return self.x_m - half_x, self.y_m - half_y, self.x_m + half_x, self.y_m + half_y
+
 
 @dataclass(frozen=True, slots=True)
 class Disc:
@@ -48,6 +61,11 @@ class Disc:
     def contains(self, x_m: float, y_m: float) -> bool:
         """Whether a point is inside."""
         return math.hypot(x_m - self.x_m, y_m - self.y_m) <= self.radius_m
+
+    @property
+    def bounds(self) -> Bounds:
+        """Left, bottom, right, top, in m."""
+        return self.x_m - self.radius_m, self.y_m - self.radius_m, self.x_m + self.radius_m, self.y_m + self.radius_m
 
 
 ZONES: Mapping[str, type[Zone]] = {"rectangle": Rectangle, "disc": Disc}
