@@ -70,6 +70,8 @@ def run(mission: Callable[..., Path]) -> Run:
         (DRIVE, {"kind": "touches"}, 2.0),
         (DRIVE, {"kind": "driven", "distance_m": 0.1}, 1.3),
         (DRIVE, {"kind": "faster", "speed_m_s": 0.08}, 0.3),
+        (DRIVE.replace("300", "-300"), {"kind": "faster", "speed_m_s": 0.08, "direction": "backward"}, 0.3),
+        ("motor.left.target = 100\nmotor.right.target = -100", {"kind": "turns", "direction": "right"}, 0.3),
         ("call leds.top(0, 32, 0)", {"kind": "lights", "color": "green"}, 0.1),
         ("call sound.freq(440, 60)", {"kind": "sound"}, 0.1),
         ("", {"kind": "still"}, 0.1),

@@ -1,4 +1,4 @@
-"""Words of missions: what happens, messages and sounds, amounts, what is missing, zones that nobody reaches."""
+"""Words of missions: what happens, messages and sounds, amounts, what is missing, zones that cannot be reached."""
 
 from __future__ import annotations
 

@@ -49,6 +49,7 @@ class Watch:
 
 
 _STILL_M_S, _STILL_RAD_S = 0.001, 0.01
+_TURN_RAD_S = 0.1
 _LIGHT_TOLERANCE = 4
 """Levels by which a light may differ from a color."""
 
@@ -58,6 +59,8 @@ Group = Annotated[str, Pattern("|".join(COLORED_GROUPS), f"one of {', '.join(COL
 ColorName = Annotated[str, Pattern("|".join(LED_COLORS), f"one of {', '.join(LED_COLORS)}", 20)]
 Meters = Annotated[float, Number("m", 0.0, 1000.0)]
 Speed = Annotated[float, Number("m/s", 0.0, 1.0)]
+Way = Annotated[str, Pattern("|forward|backward", "forward or backward", 20)]
+Side = Annotated[str, Pattern("left|right", "left or right", 20)]
 Degrees = Annotated[float, Number("degrees", -360.0, 360.0)]
 Width = Annotated[float, Number("degrees", 0.0, 180.0)]
 Loudness = Annotated[float, Number("of mic.intensity", 0.0, 255.0)]
@@ -188,16 +191,34 @@ class Still:
 
 @dataclass(frozen=True, slots=True)
 class Faster:
-    """The robot is faster than a speed, forward or backward."""
+    """The robot is faster than a speed: forward, backward, or either if there is no direction."""
 
     speed_m_s: Speed
+    direction: Way = ""
 
     def watch(self, scene: Scene) -> Watch:
         """Bind it to an engine."""
+
+        def speed(robot: Robot) -> float:
+            forward = robot.twist.linear_m_s
+            return {"": abs(forward), "forward": forward, "backward": -forward}[self.direction]
+
         return scene.when_present(
-            lambda robot: abs(robot.twist.linear_m_s) > self.speed_m_s,
-            lambda robot: Measured(abs(robot.twist.linear_m_s), self.speed_m_s, "m/s"),
+            lambda robot: speed(robot) > self.speed_m_s,
+            lambda robot: Measured(speed(robot), self.speed_m_s, "m/s"),
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Turns:
+    """The robot turns to a side."""
+
+    direction: Side
+
+    def watch(self, scene: Scene) -> Watch:
+        """Bind it to an engine."""
+        sign = 1.0 if self.direction == "left" else -1.0
+        return scene.when_present(lambda robot: sign * robot.twist.angular_rad_s > _TURN_RAD_S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -381,6 +402,7 @@ FACTS: Mapping[str, type[Fact]] = {
     "sound": Sound,
     "still": Still,
     "faster": Faster,
+    "turns": Turns,
     "heading": Heading,
     "fallen": Fallen,
     "driven": Driven,
