@@ -9,7 +9,7 @@
 //   PageLanguage     language and texts
 //   Theme, MotionSetting    how the page looks and moves
 //   Workspace, Frame        the open tab, and the layout of the page
-//   PanelHost, ProgramHost, CreatorHost, TourHost, WelcomeHost    parts of the page
+//   PanelHost, ProgramHost, CreatorHost, ShareHost, TourHost, WelcomeHost    parts of the page
 
 import { tokenIn, resolveToken } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
@@ -25,6 +25,7 @@ import { visitOptions } from "./browser/visit_options.js";
 import { MUTED_KEY } from "./header/sound.js";
 import { CreatorHost } from "./hosts/creator_host.js";
 import { ProgramHost } from "./hosts/program_host.js";
+import { ShareHost } from "./hosts/share_host.js";
 import { TourHost } from "./hosts/tour_host.js";
 import { WelcomeHost } from "./hosts/welcome_host.js";
 import { Actions, isProgram, PRIMITIVES } from "./input/actions.js";
@@ -132,6 +133,7 @@ class Page {
 
     this.program = new ProgramHost({ slot: element("#panel-program"), client: () => this.client });
     this.creator = new CreatorHost({ element, scene: () => this.scene });
+    this.share = new ShareHost();
     this.tour = new TourHost();
     this.welcome = new WelcomeHost(element('[data-slot="welcome"]'));
     this.panels = new PanelHost(element, this.workspace);
@@ -173,6 +175,7 @@ class Page {
     this.client.start();
     this.#followWorkspace();
     this.tour.start();
+    this.share.start();
     const { store, scene, dragController, creator } = this;
     exposeForTests({ store, scene, dragController, creator });
   }
@@ -241,7 +244,7 @@ class Page {
 
   /** Create all texts in the current language. */
   #build() {
-    const { pageLanguage, program, creator, tour, welcome, scene, graphics } = this;
+    const { pageLanguage, program, creator, share, tour, welcome, scene, graphics } = this;
     const context = {
       text: pageLanguage.text,
       language: pageLanguage.language,
@@ -260,6 +263,7 @@ class Page {
       motion: this.motion,
       program,
       creator,
+      share,
       tour,
       welcome,
       thumbnails: this.thumbnails,
@@ -270,7 +274,7 @@ class Page {
     this.#showTabs = fillTabs(element("#tabs"), context);
     this.#showBar = fillBottomBar(element("#bar"), context);
     this.panels.build(context);
-    for (const host of [program, creator, tour, welcome]) host.setContext(context);
+    for (const host of [program, creator, share, tour, welcome]) host.setContext(context);
     if (!scene.painter.has3d) graphics.set("gone");
     else graphics.render();
     this.redraw();

@@ -56,6 +56,35 @@ test("a program of another program on the network leaves the text, which is not 
   assert.ok(session.isInRobot);
 });
 
+test("a program from elsewhere takes no name and no place of what the user has", () => {
+  const { session } = workspace();
+  session.open("mine.aesl", "a = 1");
+  session.edit("a = 2");
+  assert.equal(session.openBeside("mine.aesl", "b = 1", false), null);
+  assert.deepEqual([session.current.name, session.code], ["mine 2.aesl", "b = 1"]);
+  const kept = session.fileStore.recent().map(({ name, text }) => [name, text.includes("a = 2")]);
+  assert.deepEqual(kept, [["mine.aesl", true], ["mine.aesl", false]]);
+});
+
+test("a program that only the robot has is kept when another one is opened beside it, a built-in one is not", () => {
+  for (const isBuiltIn of [false, true]) {
+    const { session } = workspace();
+    session.setRobotProgram(ALL, program("a = 1"));
+    session.openBeside("gift.aesl", "b = 1", isBuiltIn);
+    const kept = session.fileStore.recent().map(({ name, unsaved }) => [name, unsaved]);
+    assert.deepEqual(kept, isBuiltIn ? [] : [["robot.aesl", true]]);
+  }
+});
+
+test("a program from elsewhere that is no program changes nothing", () => {
+  const { session } = workspace();
+  session.edit("a = 1");
+  const refusal = session.openBeside("gift.aesl", '<!DOCTYPE aesl-source>\n<network><node name="a">', false);
+  assert.equal(refusal?.name, "gift.aesl");
+  assert.equal(session.code, "a = 1");
+  assert.deepEqual(session.fileStore.recent(), []);
+});
+
 test("the robot's report after loading changes nothing", () => {
   const { session, shown } = workspace();
   session.edit("a = 1");

@@ -144,9 +144,34 @@ export class Workspace {
    * @returns {Refusal | null}
    */
   open(name, text) {
-    try {
+    return this.#accept(name, () => {
       this.#replace(this.tab, opened(fileName(name), text));
       this.fileStore.addRecent({ name: fileName(name), text, time: this.now() });
+    });
+  }
+
+  /**
+   * Open a program from elsewhere beside what there is: a name that is taken gets a number, and the open program is kept
+   * among the last ones if only the robot has it. Nothing changes if it is rejected.
+   *
+   * @param {string} name
+   * @param {string} text
+   * @param {boolean} isBuiltIn  whether the open program is one of the robot's own, which need not be kept
+   * @returns {Refusal | null}
+   */
+  openBeside(name, text, isBuiltIn) {
+    return this.#accept(name, () => {
+      const document = opened(this.#freeName(name), text);
+      const { source } = this.current;
+      if (source !== null && !isBuiltIn && !isUnsaved(this.current)) this.keep();
+      this.#replace(this.tab, document);
+    });
+  }
+
+  /** @param {string} name @param {() => void} act @returns {Refusal | null} */
+  #accept(name, act) {
+    try {
+      act();
       return null;
     } catch (error) {
       if (!(error instanceof AeslError)) throw error;

@@ -134,6 +134,24 @@ export class CreatorHost {
     }
   }
 
+  /**
+   * Keep a playground from elsewhere among those of this device, and show the running world. One that has no room, or that
+   * the creator cannot read, is not kept.
+   *
+   * @param {string} text
+   */
+  keepCopy(text) {
+    this.close();
+    this.isSuspended = false;
+    const { drafts } = this;
+    if (drafts.list().some(({ id }) => drafts.read(id) === text)) return;
+    try {
+      drafts.keep({ id: drafts.newId(), title: parse(text).title, inFile: false, text });
+    } catch {
+      // It is in the link, and the simulator says what is wrong with it.
+    }
+  }
+
   /** Open a file that was dropped on the page. @param {File} file @param {import("../browser/opened_file.js").Place} place */
   openFile(file, place) {
     this.creator?.open(file, place);

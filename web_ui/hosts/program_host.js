@@ -160,6 +160,11 @@ export class ProgramHost {
     (await this.#selected())?.commands.openText(name, text);
   }
 
+  /** Open the tab with a program from elsewhere, beside what the user has. @param {string} name @param {string} text */
+  async openBeside(name, text) {
+    (await this.#selected())?.commands.openBeside(name, text);
+  }
+
   /** Open the tab with a program file. @param {File} file */
   async openFile(file) {
     void (await this.#selected())?.commands.open(file);

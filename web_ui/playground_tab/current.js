@@ -1,5 +1,6 @@
 // The current playground: what it is, a copy to edit, a new one, one from a file; and why a file was rejected.
 
+import { fileNameOf } from "../playground/document.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { uploadCause } from "../state/index.js";
 import { buttonOf, fileButton, h, lock, setText } from "../ui/dom.js";
@@ -43,7 +44,7 @@ class CurrentPanel {
         void actions.loadFile(chosen);
       },
     });
-    this.choices = h("div", { class: "row" }, this.copy, this.#newButton(), this.file);
+    this.choices = h("div", { class: "row" }, this.copy, this.#newButton(), this.file, this.#shareButton());
     this.element = h(
       "section",
       { class: "current browse", "aria-label": t("current") },
@@ -102,6 +103,21 @@ class CurrentPanel {
       { type: "button", class: "btn line", "data-new": "", title: t("new.help"), onclick: act },
       icon("blocks"),
       t("new"),
+    );
+  }
+
+  #shareButton() {
+    const { t } = this;
+    const { store, actions, share } = this.context;
+    const act = async () => {
+      const content = await actions.playgroundText();
+      if (content !== null) await share.sharePlayground(fileNameOf(store.state.simulator?.title ?? ""), content);
+    };
+    return h(
+      "button",
+      { type: "button", class: "btn line", "data-share": "playground", title: t("share.help"), onclick: () => void act() },
+      icon("share"),
+      t("share"),
     );
   }
 

@@ -4,6 +4,7 @@ import { download } from "../browser/download.js";
 import { kindOf, sentenceOf } from "../browser/foreign_files.js";
 import { textOf } from "../browser/text_file.js";
 import { looksLikeToolbox, readToolbox, unknownNames, WHOLE } from "../editor/toolbox_file.js";
+import { isExample } from "../examples/index.js";
 import { LARGEST_PROGRAM } from "../input/actions.js";
 import { robotTopic } from "../state/names.js";
 import { importerOf } from "./language_choice.js";
@@ -182,6 +183,16 @@ export class ProgramCommands {
   openText(name, content) {
     this.choice.forget();
     const refusal = this.workspace.open(name, content);
+    if (refusal !== null) this.report(this.t("editor.refused", { ...refusal }), "error");
+    this.back();
+  }
+
+  /** Open a program from elsewhere; what the user has stays. @param {string} name @param {string} content */
+  openBeside(name, content) {
+    const { name: present } = this.workspace.current;
+    const isBuiltIn = this.session.state.behaviors.some((behavior) => isExample(present, behavior.name));
+    this.choice.forget();
+    const refusal = this.workspace.openBeside(name, content, isBuiltIn);
     if (refusal !== null) this.report(this.t("editor.refused", { ...refusal }), "error");
     this.back();
   }

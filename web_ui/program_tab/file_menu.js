@@ -16,9 +16,10 @@ export const acceptedFiles = ({ imports }) => [".aesl", ".aseba", ".txt", ".json
  * @param {Translate} options.t
  * @param {import("../editor/editor_session.js").EditorSession} options.session
  * @param {import("./commands.js").ProgramCommands} options.commands
+ * @param {import("../hosts/share_host.js").ShareHost} options.share
  * @param {() => void} options.redraw
  */
-export function fileMenu({ t, session, commands, redraw }) {
+export function fileMenu({ t, session, commands, share, redraw }) {
   const { workspace } = session;
   const sheet = h("div", { id: "file-sheet", class: "program-sheet", role: "group", "aria-label": t("file") });
   const close = () => sheet.hidePopover();
@@ -59,6 +60,8 @@ export function fileMenu({ t, session, commands, redraw }) {
     open,
     entry("save", "save", "file.save", () => commands.save(), "Ctrl+S"),
     load,
+    entry("share", "share", "file.share", () => void share.shareProgram(workspace.current.name, workspace.current.text)),
+    entry("open-link", "link", "file.link", () => void share.openField()),
     entry("examples", "list", "file.examples", () => commands.newFile()),
     allBlocks,
     own,

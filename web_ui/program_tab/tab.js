@@ -95,7 +95,7 @@ export class ProgramTab {
     /** @param {import("../editor/file_store.js").StoredFile} kept */
     const draftLabel = ({ name, time }) => t("editor.draft", { name, time: new Date(time).toLocaleString(language) });
     this.head = programHead({ t, languages, choose: (id) => this.#choose(id), commands });
-    this.file = fileMenu({ t, session, commands, redraw });
+    this.file = fileMenu({ t, session, commands, share: context.share, redraw });
     this.badge = programBadge(context.text("program"));
     this.draft = draftBar({ t, draftLabel, workspace: session.workspace, redraw });
     this.foreign = foreignBar(t);

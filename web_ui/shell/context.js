@@ -20,6 +20,7 @@
  * @property {import("../browser/visit_options.js").VisitOptions} visit
  * @property {import("../hosts/program_host.js").ProgramHost} program
  * @property {import("../hosts/creator_host.js").CreatorHost} creator
+ * @property {import("../hosts/share_host.js").ShareHost} share
  * @property {import("../hosts/tour_host.js").TourHost} tour
  * @property {import("../hosts/welcome_host.js").WelcomeHost} welcome
  * @property {import("../playground_tab/thumbnail_cache.js").ThumbnailCache} thumbnails   shipped playgrounds with their thumbnails

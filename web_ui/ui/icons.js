@@ -49,6 +49,8 @@ const DRAWINGS = /** @type {const} */ ({
   left: '<path class="f" d="M7 12 15.5 6.5v11z"/>',
   lift:
     '<path d="M4 20.5h16M7.5 16.5v-3.2A3.3 3.3 0 0 1 10.8 10h2.4a3.3 3.3 0 0 1 3.3 3.3v3.2Z"/><path d="M12 7V2.5M12 2.5 9.5 5M12 2.5 14.5 5"/>',
+  link:
+    '<path d="M10 14a4 4 0 0 0 5.7 0l3-3A4 4 0 0 0 13 5.3l-1.2 1.2M14 10a4 4 0 0 0-5.7 0l-3 3a4 4 0 0 0 5.7 5.7l1.2-1.2"/>',
   list:
     '<path d="M9 6h11M9 12h11M9 18h11"/><circle class="f" cx="4.8" cy="6" r="1.4"/><circle class="f" cx="4.8" cy="12" r="1.4"/><circle class="f" cx="4.8" cy="18" r="1.4"/>',
   message: '<path d="M4 5.5h16v11H10.5l-4 3.500v-3.500H4Z"/>',
@@ -94,6 +96,8 @@ const DRAWINGS = /** @type {const} */ ({
   screen: '<rect x="3" y="4.5" width="18" height="12" rx="1.5"/><path d="M12 16.5v3.500M8 20h8"/>',
   search: '<circle cx="10.5" cy="10.5" r="6.5"/><path d="m15.5 15.5 5 5"/>',
   select: '<path d="m5 4 5.5 15 2.3-6.2L19 10.5Z"/>',
+  share:
+    '<circle cx="6.5" cy="12" r="2.5"/><circle cx="17" cy="6" r="2.5"/><circle cx="17" cy="18" r="2.5"/><path d="m8.7 10.8 6.1-3.5M8.7 13.2l6.1 3.5"/>',
   sliders:
     '<path d="M4 7h8M16.5 7H20M4 17h3.5M12 17h8"/><circle cx="14.2" cy="7" r="2.2"/><circle cx="9.8" cy="17" r="2.2"/>',
   sound:
