@@ -238,9 +238,11 @@ def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simula
     """Make a simulator node in this process, stepped by the test; keyword arguments are its parameters.
 
     A velocity ends as under `thymio-sim`, half a second after the last command; with `cmd_vel_timeout=0.0` it is valid
-    until the next one, as with the driver and `ros2 launch`.
+    until the next one, as with the driver and `ros2 launch`. With `lidar=True`, or a `Lidar`, the robots have one.
     """
     from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
+    from thymio_sim_ros.ros.simulator.parameters import LidarParams
+    from thymio_sim_ros.sim.model.lidar import Lidar
     from thymio_sim_ros.suite_config import SuiteConfig
     from thymio_sim_ros.testing.ros import Simulation
 
@@ -250,6 +252,8 @@ def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simula
         as_suite = {"cmd_vel_timeout": SuiteConfig().cmd_vel_timeout_s}
         wanted = {"playground": "base", **as_suite, **marked, **parameters}
         wanted["playground"] = _playground(request, wanted["playground"])
+        lidar = wanted.pop("lidar", None)
+        wanted["lidar"] = LidarParams.of(Lidar() if lidar is True else lidar or None)
         wanted.setdefault("log", str(_run_log(request) or ""))
         defaults = replace(SimulatorParams(start_paused=True), **wanted)
         graded = _is_graded(request)

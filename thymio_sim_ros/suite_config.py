@@ -9,6 +9,7 @@ from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.network.settings import NetworkSettings
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 
 ADDRESS = "localhost"
@@ -30,6 +31,7 @@ class SuiteConfig:
         playground: shipped name, path or JSON text.
         program: name of a behavior, or path.
         behaviour: built-in behavior after switching on, from whose menu the program can be started; empty for none.
+        lidar: that of each robot, None for robots without one.
         robot: address of a real robot, in place of the simulator; empty for none.
         address: address on which page and bridge listen, `ADDRESS` or an IPv4 address.
         foxglove_port: port of the bridge; `OFF`: none beside that of the page, which serves it as well.
@@ -50,6 +52,7 @@ class SuiteConfig:
     device: DeviceOptions = DEFAULTS
     motor_model: str = MOTOR_MODELS[0]
     proximity_model: str = PROXIMITY_MODELS[0]
+    lidar: Lidar | None = None
     out_of_range: str = OUT_OF_RANGE[0]
     robot: str = ""
     address: str = ADDRESS

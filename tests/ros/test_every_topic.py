@@ -85,7 +85,7 @@ def is_as_declared(info, profile):
 
 @pytest.mark.parametrize(("sensor", "row"), PUBLISHED, ids=[row.topic for _, row in PUBLISHED])
 def test_what_a_robot_publishes(ros, simulation, sensor, row):
-    sim = simulation(playground=PAIR)
+    sim = simulation(playground=PAIR, lidar=True)
     topic = f"/anna/{row.topic}"
     (info,) = ros.node.get_publishers_info_by_topic(topic)
     assert info.topic_type == generate_ros_docs.type_name(row.type)

@@ -11,6 +11,7 @@ from thymio_sim_ros.sim.ground.sampling import GroundSample
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.mechanics.wheels import Wheels
 from thymio_sim_ros.sim.model.geometry import LEVEL, Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.noise import Noise, NoiseKeys
 from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
@@ -48,6 +49,7 @@ class FakeView:
     noise: Noise = QUIET
     memory: dict[str, Any] = field(default_factory=dict)
     proximity_model: str = "default"
+    lidar: Lidar | None = None
     obstacles: tuple[Obstacle, ...] = ()
     grounds: dict[float, GroundSample] = field(default_factory=dict)
     states: tuple[Any, ...] = ()
@@ -124,6 +126,10 @@ class FakeBatch(FakeBody):
     @property
     def proximity_model(self) -> str:
         return self._view.proximity_model
+
+    @property
+    def lidar(self) -> Lidar | None:
+        return self._view.lidar
 
     @property
     def tilts(self) -> list[Tilt]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from aseba_vm.targets import THYMIO_II
 from thymio_sim_ros.cli.errors import UsageError
@@ -18,6 +19,7 @@ from thymio_sim_ros.files import resources
 from thymio_sim_ros.files.loading import NO_PROGRAM, check_behaviour, load_playground, read_assignments, read_program
 from thymio_sim_ros.network.robot_target import TargetError, parse_target
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 from thymio_sim_ros.suite_config import SuiteConfig
@@ -27,7 +29,9 @@ __all__ = [
     "add_world_options",
     "check_files",
     "check_robot_program",
+    "describe_lidar",
     "device_options",
+    "lidar_argument",
     "number_argument",
     "path_argument",
     "program_option",
@@ -175,3 +179,33 @@ def number_argument(text: str, low: float, high: float) -> float:
     if not low <= value <= high:
         raise argparse.ArgumentTypeError(f"'{text}' found, expected a number from {low:g} to {high:g}")
     return value
+
+
+_LIDAR_WORDS = {"beams": "beams", "range": "range_m", "rate": "rate_hz", "noise": "noise_m"}
+"""Words of the option `--lidar`, and the fields of `Lidar` that they set."""
+
+
+def lidar_argument(text: str) -> Lidar:
+    """A lidar from text such as `beams=180,range=2`. Raises ArgumentTypeError."""
+    values: dict[str, Any] = {}
+    for part in text.split(","):
+        word, _, value = part.strip().partition("=")
+        if word not in _LIDAR_WORDS or word in values:
+            found = "was given twice" if word in values else "is no option of a lidar"
+            raise argparse.ArgumentTypeError(
+                f"'{word}' {found}, expected {', '.join(f'{known}=…' for known in _LIDAR_WORDS)}, each at most once"
+            )
+        try:
+            values[word] = int(value) if word == "beams" else float(value)
+        except ValueError:
+            expected = "an integer" if word == "beams" else "a number"
+            raise argparse.ArgumentTypeError(f"{word}: found '{value}', expected {expected}") from None
+    try:
+        return Lidar(**{_LIDAR_WORDS[word]: value for word, value in values.items()})
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def describe_lidar(lidar: Lidar) -> str:
+    """The text from which `lidar_argument` makes this lidar."""
+    return ",".join(f"{word}={getattr(lidar, name):g}" for word, name in _LIDAR_WORDS.items())

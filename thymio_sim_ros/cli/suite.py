@@ -20,7 +20,9 @@ from thymio_sim_ros.cli.options import (
     add_world_options,
     check_files,
     check_robot_program,
+    describe_lidar,
     device_options,
+    lidar_argument,
     number_argument,
     path_argument,
     program_option,
@@ -34,13 +36,14 @@ from thymio_sim_ros.engine.run_log import RunLogError
 from thymio_sim_ros.files.loading import NO_PROGRAM
 from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
 from thymio_sim_ros.network.settings import OFF
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.suite_config import OUT_OF_RANGE, SuiteConfig
 
 __all__ = ["run"]
 
 ROS_ARGS = "--ros-args"
 
-_OF_WORLD = ("playground", "behaviour", "seed", "motors", "proximity")
+_OF_WORLD = ("playground", "behaviour", "seed", "motors", "proximity", "lidar")
 _SIMULATOR_ONLY = (
     *_OF_WORLD,
     "log",
@@ -144,6 +147,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         device=device_options(options),
         motor_model=options.motors,
         proximity_model=options.proximity,
+        lidar=options.lidar,
         out_of_range=options.out_of_range,
         robot=options.robot,
         address=options.address,
@@ -221,6 +225,15 @@ def _parser() -> argparse.ArgumentParser:
         choices=OUT_OF_RANGE,
         default=SuiteConfig.out_of_range,
         help="range without an obstacle: +inf, or -1 as code written for the ROS driver expects (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--lidar",
+        type=lidar_argument,
+        nargs="?",
+        const=Lidar(),
+        metavar="beams=N,range=M,rate=HZ,noise=M",
+        help="give each robot a laser scanner, topic scan; a real Thymio has none (without values: "
+        f"{describe_lidar(Lidar())})",
     )
     add_graph_options(parser)
     parser.add_argument("--version", action="version", version=f"thymio-sim {thymio_sim_ros.__version__}")

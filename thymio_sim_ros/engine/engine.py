@@ -41,6 +41,7 @@ from thymio_sim_ros.engine.inputs import (
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, PressButton
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.plugin_api.reading_table import ReadingTable
@@ -71,13 +72,14 @@ class Engine:
         seed: int = 0,
         noise: bool = True,
         periods_ns: Mapping[str, int] | None = None,
+        lidar: Lidar | None = None,
         shares_numbers: bool = False,
         ground: Ground | None = None,
     ) -> None:
         """Create the world and a device for each robot with a program: one program for all, or one by robot name.
 
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu. A
-        `DeviceStart` in place of a program says all of one robot. `periods_ns`: the sensors that measure, see `World`.
+        `DeviceStart` in place of a program says all of one robot. `periods_ns`, `lidar`: see `World`.
         `shares_numbers`: see `RunStart`. A `ground` of the playground that exists already, from a run that has ended,
         need not be painted again. SdCardError, SettingsError: a folder of the options cannot be used.
         """
@@ -88,6 +90,7 @@ class Engine:
             motor_model=motor_model,
             proximity_model=proximity_model,
             periods_ns=periods_ns,
+            lidar=lidar,
             ground=ground,
         )
         starts = _device_starts(list(self.world.robots), programs, behaviour)
@@ -127,6 +130,7 @@ class Engine:
             noise=world.noise,
             shares_numbers=start.shares_numbers,
             periods_ns=None if world.periods_ns is None else dict(world.periods_ns),
+            lidar=world.lidar,
             ground=ground,
         )
 

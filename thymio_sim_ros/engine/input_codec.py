@@ -33,6 +33,7 @@ from thymio_sim_ros.engine.inputs import (
     VariableSet,
 )
 from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.playground import reader as playgrounds
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.playground.writer import dumps
@@ -114,7 +115,8 @@ def read_start(head: dict[str, Any]) -> tuple[str, RunStart]:
         raise ValueError("found a world whose name or playground is no text, expected both")
     pairs = None if periods is None else tuple((str(sensor), int(period_ns)) for sensor, period_ns in periods)
     added = pop_devices(head)
-    world = WorldOptions(**head, periods_ns=pairs)
+    lidar = head.pop("lidar", None)  # logs of earlier versions have none
+    world = WorldOptions(**head, periods_ns=pairs, lidar=None if lidar is None else Lidar(**lidar))
     start = RunStart(playgrounds.loads(text, name), world, added.devices, added.options, added.shares_numbers)
     return name, start
 

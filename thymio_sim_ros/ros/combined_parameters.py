@@ -17,7 +17,7 @@ from typing import Any
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams, RuntimeParams, is_free
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
-from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
+from thymio_sim_ros.ros.simulator.parameters import LidarParams, SimulatorParams
 from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["BRIDGE", "PAGE", "RUNTIME", "SIMULATOR", "SUITE", "Target", "assigned", "defaults", "targets"]
@@ -60,6 +60,7 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
             seed=suite.seed,
             motor_model=suite.motor_model,
             proximity_model=suite.proximity_model,
+            lidar=LidarParams.of(suite.lidar),
             out_of_range=suite.out_of_range,
             log=suite.log,
             replay=suite.replay,

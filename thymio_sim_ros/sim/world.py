@@ -20,6 +20,7 @@ from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.model.geometry import Pose
+from thymio_sim_ros.sim.model.lidar import LIDAR, Lidar
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics
@@ -46,13 +47,17 @@ _ON_EDGE_M = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class WorldOptions:
-    """The options of a world besides its playground; `periods_ns` as pairs, None for the periods of the sensors."""
+    """The options of a world besides its playground; `periods_ns` as pairs, None for the periods of the sensors.
+
+    `lidar`: that of each robot, None for robots without one.
+    """
 
     seed: int
     noise: bool
     proximity_model: str
     motor_model: str
     periods_ns: tuple[tuple[str, int], ...] | None = None
+    lidar: Lidar | None = None
 
 
 class StepResult(NamedTuple):
@@ -75,6 +80,7 @@ class World:
         proximity_model: str = PROXIMITY_MODELS[0],
         motor_model: str = MOTOR_MODELS[0],
         periods_ns: Mapping[str, int] | None = None,
+        lidar: Lidar | None = None,
         ground: Ground | None = None,
     ) -> None:
         """Create the world at time 0.
@@ -85,7 +91,9 @@ class World:
             noise: Whether sensors and motors are noisy.
             proximity_model: One of `robot_constants.PROXIMITY_MODELS`.
             motor_model: One of `commands.MOTOR_MODELS`.
-            periods_ns: The sensors that measure, and their periods; None: all, with their own periods.
+            periods_ns: The sensors that measure, and their periods; None: all, with their own periods. A lidar
+                measures also if it is not among them.
+            lidar: The lidar of each robot; None: they have none.
             ground: The ground of the playground if it exists already; the world owns it from now on.
 
         Raises:
@@ -96,11 +104,11 @@ class World:
                 f"proximity model: found {proximity_model!r}, expected one of {', '.join(PROXIMITY_MODELS)}"
             )
         self._motor_model = SetMotorModel(motor_model)
-        self._sensors = _chosen(all_sensors(), periods_ns)
+        self._sensors = _chosen(_present(all_sensors(), lidar), periods_ns)
         self.playground = playground
         self.scene = Scene.of(playground)
         periods = None if periods_ns is None else tuple(periods_ns.items())
-        self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods)
+        self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods, lidar)
         self.robot_changes = 0
         """Number of robots added and removed so far."""
         self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
@@ -126,6 +134,7 @@ class World:
             proximity_model=self.options.proximity_model,
             seed=self.options.seed,
             is_noisy=self.options.noise,
+            lidar=self.options.lidar,
         )
         self._plugins = sorted((*all_actuators(), *all_stimuli()), key=lambda plugin: plugin.name)
         self._schedule = Schedule((sensor.period_ns, sensor.phase_ns) for sensor in self._sensors)
@@ -345,6 +354,16 @@ def _finite(name: str, pose: Pose) -> Pose:
     return pose
 
 
+def _present(sensors: tuple[Sensor, ...], lidar: Lidar | None) -> tuple[Sensor, ...]:
+    """The sensors of a robot with these add-ons, which have their own periods."""
+    periods_ns = {} if lidar is None else {LIDAR: lidar.period_ns}
+    return tuple(
+        sensor.with_period(periods_ns.get(sensor.name, sensor.period_ns))
+        for sensor in sensors
+        if not sensor.is_add_on or sensor.name in periods_ns
+    )
+
+
 def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
     """The sensors that measure. Raises ValueError for an unknown name or a period that is not above 0."""
     if periods_ns is None:
@@ -355,4 +374,8 @@ def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -
             raise ValueError(f"sensor: found {name!r}, expected one of {', '.join(names)}")
         if period_ns <= 0:
             raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
-    return tuple(sensor.with_period(periods_ns[sensor.name]) for sensor in sensors if sensor.name in periods_ns)
+    return tuple(
+        sensor.with_period(periods_ns.get(sensor.name, sensor.period_ns))
+        for sensor in sensors
+        if sensor.name in periods_ns or sensor.is_add_on
+    )

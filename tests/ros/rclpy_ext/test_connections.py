@@ -15,6 +15,7 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from sensor_msgs.msg import LaserScan
 from std_msgs.msg import ColorRGBA, String
 from std_srvs.srv import Empty, Trigger
 
@@ -184,12 +185,15 @@ def test_a_topic_that_is_switched_off_is_reported_with_its_parameter(ros, simula
     node = strange_node()
     node.create_subscription(Odometry, "/_ground_truth/odom", print, 1)
     node.create_subscription(OccupancyGrid, "/map", print, 1)
-    ros.until(lambda: len(beaten(simulator)) == 2)
+    node.create_subscription(LaserScan, "/scan", print, 1)
+    ros.until(lambda: len(beaten(simulator)) == 3)
     assert sorted(str(one) for one in beaten(simulator)) == [
         f"/_ground_truth/odom has a subscriber of {ODOMETRY} by node /teleop; expected a publisher: it gets no message."
         " It is switched off: start the simulator with --ros-args -p publish_ground_truth:=true",
         "/map has a subscriber of nav_msgs/msg/OccupancyGrid by node /teleop; expected a publisher: it gets no message."
         " It is switched off: start the simulator with --ros-args -p publish_map:=true",
+        "/scan has a subscriber of sensor_msgs/msg/LaserScan by node /teleop; expected a publisher: it gets no message."
+        " It is switched off: start the simulator with --ros-args -p lidar.enabled:=true",
     ]
 
 

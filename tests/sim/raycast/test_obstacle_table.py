@@ -11,7 +11,6 @@ from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.raycast.obstacle_table import (
     BOX,
     DISC,
-    FAR_M,
     NOWHERE_M,
     POLYGON,
     ObstacleTable,
@@ -67,10 +66,9 @@ def test_a_polygon_that_moves_keeps_its_half_planes() -> None:
     assert found.planes.normal_x[slice(*planes)].tolist() == normals
 
 
-def test_what_is_gone_has_no_height_until_it_is_back_and_candidates_are_found_again() -> None:
+def test_what_is_gone_has_no_height_until_it_is_back() -> None:
     disc = DiscObstacle(1.0, 2.0, 0.3, 0.1)
     found = table(disc)
     for obstacle, height_m in ((None, NOWHERE_M), (disc, 0.1)):
-        found.obstacles.known_x[0] = 1.0
         found.put(0, obstacle)
-        assert (found.obstacles.height[0], found.obstacles.known_x[0]) == (height_m, FAR_M)
+        assert found.obstacles.height[0] == height_m

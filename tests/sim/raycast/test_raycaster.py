@@ -54,7 +54,7 @@ class Caster:
         self.robots = RobotState(memory, robots)
         self.robots.is_standing[:] = 1
         raycaster = Raycaster(memory, self.robots, robots, fixed, loose)
-        self.move = raycaster.move
+        self.raycaster, self.move = raycaster, raycaster.move
         self._cast, self._distances = raycaster.bind(fan)
 
     def cast(self, poses: Sequence[Pose]) -> list[list[float]]:
@@ -152,6 +152,25 @@ def test_what_is_gone_or_fallen_is_not_seen_and_sees_nothing() -> None:
     assert close(found[:6] + found[8:], one_by_one(left, loose, FAN))
     caster.robots.is_standing[3] = 1
     assert close(caster.cast(poses), one_by_one(poses, loose, FAN))
+
+
+def test_two_fans_in_use_each_keep_what_is_near_them_up_to_date() -> None:
+    dice = random.Random(8)
+    far = Fan([(0.02, 0.0)], [[(math.cos(turn), math.sin(turn)) for turn in range(4)]], range_m=1.0, height_m=0.05)
+    fixed, poses = things(dice, 6, 1.5), scatter(dice, 5, 1.5)
+    discs = [DiscObstacle(pose.x_m, pose.y_m, 0.04, 0.1) for pose in scatter(dice, 6, 1.5)]
+    caster = Caster(len(poses), fixed, discs)
+    cast_far, lengths = caster.raycaster.bind(far)
+    for step in range(40):
+        poses = [Pose(p.x_m + dice.uniform(-0.02, 0.03), p.y_m, p.yaw_rad + dice.uniform(-1, 1)) for p in poses]
+        discs = [DiscObstacle(disc.x_m + dice.uniform(-0.04, 0.04), disc.y_m, 0.04, 0.1) for disc in discs]
+        loose = [None if step % 7 == number else disc for number, disc in enumerate(discs)]
+        caster.move(dict(enumerate(loose)))
+        there = [*fixed, *(one for one in loose if one is not None)]
+        assert close(caster.cast(poses), one_by_one(poses, there, FAN))
+        cast_far()
+        rows: list[list[float]] = lengths.reshape(-1, 4).tolist()
+        assert close(rows, one_by_one(poses, there, far))
 
 
 def test_without_robots_or_objects_nothing_is_seen() -> None:

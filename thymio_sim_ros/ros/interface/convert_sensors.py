@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from array import array
 
 from geometry_msgs.msg import Point
-from sensor_msgs.msg import BatteryState, Imu, Temperature
+from sensor_msgs.msg import BatteryState, Imu, LaserScan, Temperature
 from std_msgs.msg import Bool, ColorRGBA, Empty, Float32, Int8, Int16
 from visualization_msgs.msg import Marker
 
 from thymio_sim_ros.ros.interface.headers import stamped
-from thymio_sim_ros.ros.interface.names import RobotNames
+from thymio_sim_ros.ros.interface.names import SCAN_FRAME, RobotNames
 from thymio_sim_ros.sim.model import readings
+from thymio_sim_ros.sim.model.lidar import LIDAR_MIN_M
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_HEIGHT_M, PROXIMITY_POSES, PROXIMITY_RANGE_M
 
 ACCELERATION_VARIANCE = 0.07
@@ -75,6 +77,22 @@ def battery(reading: readings.BatteryReading, names: RobotNames, _options: objec
         present=True,
     )
     return stamped(message, reading.stamp_ns, names.frame("base_link"))
+
+
+def scan(reading: readings.LidarReading, names: RobotNames, _options: object) -> LaserScan:
+    """Return the distances of the lidar; all beams measure at once: no time increment, no intensities."""
+    lidar = reading.lidar
+    message = LaserScan(
+        angle_min=0.0,
+        angle_max=(lidar.beams - 1) * lidar.step_rad,
+        angle_increment=lidar.step_rad,
+        time_increment=0.0,
+        scan_time=1.0 / lidar.rate_hz,
+        range_min=LIDAR_MIN_M,
+        range_max=lidar.range_m,
+        ranges=array("f", reading.ranges_m),
+    )
+    return stamped(message, reading.stamp_ns, names.frame(SCAN_FRAME))
 
 
 def tap(_reading: readings.TapReading, _names: RobotNames, _options: object) -> Empty:

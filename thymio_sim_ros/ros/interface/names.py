@@ -25,6 +25,8 @@ HIDDEN = "_"
 """First character of a hidden word: `ros2 topic list` omits topics with such a word in their name (docs/ros.md)."""
 
 MAP_FRAME = "map"
+SCAN_FRAME = "base_scan"
+"""Frame of the lidar."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,16 +31,17 @@ from visualization_msgs.msg import Marker, MarkerArray
 from thymio_sim_ros.ros.interface import convert_readings, convert_sensors, qos
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
-from thymio_sim_ros.ros.interface.names import MAP_FRAME, PROXIMITY, SIDES, RobotNames, raw_topic
+from thymio_sim_ros.ros.interface.names import MAP_FRAME, PROXIMITY, SCAN_FRAME, SIDES, RobotNames, raw_topic
 from thymio_sim_ros.sim import commands
 from thymio_sim_ros.sim.audio.synthesis import TRIANGLE
+from thymio_sim_ros.sim.model.lidar import LIDAR
 from thymio_sim_ros.sim.model.readings import LoudspeakerReading, PenReading, Reading
 from thymio_sim_ros.sim.sensors import Sensor
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message
 
-JOINTS, TRUTH = "joint_states", "_ground_truth/odom"
+JOINTS, TRUTH, SCAN = "joint_states", "_ground_truth/odom", "scan"
 
 M = TypeVar("M", bound="Message")
 
@@ -224,6 +225,15 @@ ROWS: dict[str, tuple[Row, ...]] = {
     "sound": (Row("_sound", Float32, convert_sensors.sound, "loudness 0…1 above `_sound_threshold`", is_event=True),),
     "remote": (Row("_remote", Int8, convert_sensors.remote, "command 0…127 of a key of an RC5 remote control"),),
     "comm": (Row("_comm/received", Int16, convert_sensors.received, "value of an infrared frame"),),
+    LIDAR: (
+        Row(
+            SCAN,
+            LaserScan,
+            convert_sensors.scan,
+            "the lidar, only with `--lidar`: m, counter-clockwise from the front; +inf: nothing within range",
+            SCAN_FRAME,
+        ),
+    ),
     "pen": (
         Row(
             "_pen/trail",

@@ -48,7 +48,7 @@ class SimulatorEndpoints:
         """
         self.clock = ClockPublisher(node, is_on=params.publish_clock, rate_hz=params.clock_rate)
         self.world = WorldEndpoints(node, control, publish_map=params.publish_map, map_frame=params.map_frame)
-        self.demand = SubscriberDemand(params.periods_ns)
+        self.demand = SubscriberDemand(params.published_periods_ns)
         self.robots = RobotEndpointSet(make, params.naming)
         options = replace(params.transform_options, is_localized=is_localized)
         self._transforms = Transforms(node, self.demand, options)

@@ -35,7 +35,7 @@ from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
-from thymio_sim_ros.ros.simulator.parameters import CurrentParams, SimulatorParams
+from thymio_sim_ros.ros.simulator.parameters import CurrentParams, LidarParams, SimulatorParams
 from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_engine
 from thymio_sim_ros.ros.simulator.recording import Recording
 from thymio_sim_ros.ros.simulator.robot_access import RobotAccess
@@ -85,6 +85,9 @@ class Simulator:
             params.warn_of_unknown(self.node, "ros.md")
             qos.check_overrides(self.node)
             logged = last_run(Path(values.replay)) if values.replay else None
+            if logged is not None:
+                values = replace(values, lidar=LidarParams.of(logged.start.world.lidar))
+                self.params.values = values
             if logged is None:
                 prepared = PreparedPlayground.load(values.playground, values)
             else:

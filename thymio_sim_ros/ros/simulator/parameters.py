@@ -14,7 +14,7 @@ from thymio_sim_ros.ros.interface.convert_readings import (
 )
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import FrameNames, Naming
-from thymio_sim_ros.ros.interface.sensor_topics import JOINTS, TRUTH
+from thymio_sim_ros.ros.interface.sensor_topics import JOINTS, SCAN, TRUTH
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, EndpointOptions
@@ -23,6 +23,7 @@ from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.fields import FieldError
+from thymio_sim_ros.sim.model.lidar import LIDAR, MOST_BEAMS, Lidar
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import NEVER_NS, all_sensors
@@ -48,6 +49,7 @@ class RangeParams:
 
 
 _RANGE = RangeParams()
+_LIDAR = Lidar()
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,29 @@ class ProximityParams:
 
 
 @dataclass(frozen=True)
+class LidarParams:
+    """The lidar of the robots; a real Thymio has none."""
+
+    enabled: bool = param(False, "Whether the robots have a lidar, on the topic scan", fixed=True)
+    beams: int = param(_LIDAR.beams, "Beams over the full circle", low=1, high=MOST_BEAMS, fixed=True)
+    range: float = param(_LIDAR.range_m, "Longest range in m", low=0.1, high=10.0, fixed=True)
+    rate: float = param(_LIDAR.rate_hz, "Scans per second", low=0.1, high=100.0, fixed=True)
+    noise: float = param(_LIDAR.noise_m, "Standard deviation of a range in m", low=0.0, high=1.0, fixed=True)
+
+    @classmethod
+    def of(cls, lidar: Lidar | None) -> LidarParams:
+        """Return the parameters of a lidar, or of none."""
+        if lidar is None:
+            return cls()
+        return cls(True, lidar.beams, lidar.range_m, lidar.rate_hz, lidar.noise_m)
+
+    @property
+    def lidar(self) -> Lidar | None:
+        """The lidar of the robots, None for none."""
+        return Lidar(self.beams, self.range, self.rate, self.noise) if self.enabled else None
+
+
+@dataclass(frozen=True)
 class SimulatorParams:
     """Parameters of the simulator node."""
 
@@ -88,6 +113,7 @@ class SimulatorParams:
     proximity_model: str = param(
         PROXIMITY_MODELS[0], "Proximity sensor model, see docs/robot.md", fixed=True, choices=PROXIMITY_MODELS
     )
+    lidar: LidarParams = group(LidarParams(), "lidar")
     real_time_factor: float = param(1.0, "Simulated seconds per second; 0 is as fast as possible", low=0.0, high=1000.0)
     start_paused: bool = param(False, "Whether the world starts paused, until ~/pause or ~/step", fixed=True)
     step_ticks: int = param(1, "Ticks of 10 ms per ~/step", low=1, high=100_000)
@@ -197,7 +223,8 @@ class SimulatorParams:
             "map": "publish_map",
             "clock": "publish_clock",
         }
-        return {topic: name for topic, name in parameters.items() if not getattr(self, name)}
+        lidar = {} if self.lidar.enabled else {SCAN: "lidar.enabled"}
+        return {topic: name for topic, name in parameters.items() if not getattr(self, name)} | lidar
 
     @property
     def endpoint_options(self) -> EndpointOptions:
@@ -213,11 +240,17 @@ class SimulatorParams:
         """Sensor periods by sensor name; None: as on the robot."""
         if self.sensor_rate == 0.0 and self.odom_max_rate == ODOM_RATE:
             return None
-        periods = {sensor.name: sensor.period_ns for sensor in all_sensors()}
+        periods = {sensor.name: sensor.period_ns for sensor in all_sensors() if not sensor.is_add_on}
         if self.sensor_rate > 0.0:
             common = _period_ns(self.sensor_rate)
             periods = {name: period if period == NEVER_NS else common for name, period in periods.items()}
         return periods | {"pose": _period_ns(self.odom_max_rate)}
+
+    @property
+    def published_periods_ns(self) -> Mapping[str, int]:
+        """Sensor periods that differ from those that the sensors declare."""
+        lidar = self.lidar.lidar
+        return {**(self.periods_ns or {}), **({} if lidar is None else {LIDAR: lidar.period_ns})}
 
     def renamed(self, playground: Playground) -> Playground:
         """Return the playground with robots renamed as in `robot_names`. Raises StartError for an invalid name."""
@@ -238,7 +271,9 @@ class SimulatorParams:
     @property
     def transform_options(self) -> TransformOptions:
         """Options for transforms."""
-        return TransformOptions(self.publish_map_tf, self.publish_wheel_tf, self.publish_static_tf, self.namespaced_tf)
+        return TransformOptions(
+            self.publish_map_tf, self.publish_wheel_tf, self.publish_static_tf, self.namespaced_tf, self.lidar.enabled
+        )
 
 
 class CurrentParams:

@@ -50,5 +50,6 @@ def new_engine(playground: Playground, chosen: SimulatorParams, ground: Ground |
         proximity_model=chosen.proximity_model,
         motor_model=chosen.motor_model,
         periods_ns=chosen.periods_ns,
+        lidar=chosen.lidar.lidar,
         ground=ground,
     )

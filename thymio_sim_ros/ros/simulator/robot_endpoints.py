@@ -169,7 +169,7 @@ class RobotEndpoints:
             self._description = node.create_publisher(
                 DESCRIPTION_TOPIC[0], names.topic(DESCRIPTION), qos.TRANSIENT_LOCAL
             )
-            self._description.publish(String(data=urdf(names)))
+            self._description.publish(String(data=urdf(names, has_lidar=sensor_topics.SCAN not in options.left_out)))
         known = (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
         inputs = [robot_input for robot_input in known if robot_input.topic not in options.left_out]
         self._subscriptions: list[tuple[Any, Any]] = [

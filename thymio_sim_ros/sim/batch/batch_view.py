@@ -13,6 +13,7 @@ from thymio_sim_ros.sim.audio.propagation import Sound
 from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.model.geometry import Tilt
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.noise import NoiseKeys, noise_keys
 from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
 from thymio_sim_ros.sim.raycast.raycaster import Fan, Values
@@ -84,6 +85,10 @@ class BatchView:
     @property
     def proximity_model(self) -> str:
         return self._batch.shared.proximity_model
+
+    @property
+    def lidar(self) -> Lidar | None:
+        return self._batch.shared.lidar
 
     @property
     def ground(self) -> Ground:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from thymio_sim_ros.sim.model import units
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.primitives import Color, Stroke
 
 
@@ -220,6 +221,16 @@ class CollisionReading:
 
 
 @dataclass(frozen=True, slots=True)
+class LidarReading:
+    """A scan of a `lidar`: distances in m by beam (inf: nothing within range). Programs see nothing of it."""
+
+    stamp_ns: int
+    words: tuple[int, ...]
+    ranges_m: tuple[float, ...]
+    lidar: Lidar
+
+
+@dataclass(frozen=True, slots=True)
 class PlainReading:
     """A reading of words alone: enough for the sensor of a plug-in (docs/plugins.md)."""
 
@@ -247,5 +258,6 @@ Reading = (
     | CurrentReading
     | CommReading
     | CollisionReading
+    | LidarReading
     | PlainReading
 )

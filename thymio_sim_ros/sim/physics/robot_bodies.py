@@ -21,6 +21,8 @@ _VALUES = 6
 _SHARED_BYTES, _ROBOT_BYTES = 1 << 20, 1 << 16
 """Room in the memory for the arrays of sensors, for all robots and for each: far more than they need. What is not used
 costs only address space."""
+_FANS = 2
+"""Fans of rays at most: those of the proximity sensors and of a lidar."""
 
 
 class RobotBodies:
@@ -165,7 +167,7 @@ class RobotBodies:
             + WheelState.size(2 * count)
             + sum(KernelMemory.room(*shape) for shape in shapes)
             + _SHARED_BYTES
-            + count * (_ROBOT_BYTES + 4 * (self._obstacles + count))  # pairs of a robot and what it may see
+            + count * (_ROBOT_BYTES + _FANS * 4 * (self._obstacles + count))  # pairs of a robot and what it may see
         )
         self.memory = memory
         self.state, self.wheels = RobotState(memory, count), WheelState(memory, 2 * count)

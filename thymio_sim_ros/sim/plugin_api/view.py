@@ -18,6 +18,7 @@ from thymio_sim_ros.sim.ground.sampling import Ground, GroundSample
 from thymio_sim_ros.sim.kernel.memory import Argument, KernelMemory
 from thymio_sim_ros.sim.mechanics.wheels import Wheels
 from thymio_sim_ros.sim.model.geometry import Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.noise import Noise, NoiseKeys
 from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.model.robot_state import RobotState, WheelState
@@ -176,6 +177,11 @@ class BatchSensorView(Protocol):
     @property
     def proximity_model(self) -> str:
         """One of `robot_constants.PROXIMITY_MODELS`."""
+        ...
+
+    @property
+    def lidar(self) -> Lidar | None:
+        """The lidar of the robots, if they have one."""
         ...
 
     @property

@@ -61,12 +61,6 @@ class Obstacles(Record):
     first_plane: Ints
     """The half planes of a polygon are `first_plane` to `last_plane`, the end not included."""
     last_plane: Ints
-    reach_x: Floats
-    """Distance along the world's axes within which a robot may detect it, with a margin, m."""
-    reach_y: Floats
-    known_x: Floats
-    """Position at which the candidates were determined; FAR_M if they are out of date."""
-    known_y: Floats
 
 
 class Planes(Record):
@@ -103,17 +97,13 @@ class ObstacleTable:
         obstacles.half_x[hulls], obstacles.half_y[hulls] = hull[4:]
         obstacles.kind[hulls] = POLYGON
         obstacles.first_plane[hulls], obstacles.last_plane[hulls] = self._add_planes(hull_planes)
-        obstacles.known_x[:] = FAR_M
         for row, obstacle in enumerate((*fixed, *loose)):
             self.put(row, obstacle)
 
     def put(self, row: int, obstacle: Obstacle | None) -> None:
         """Write an obstacle; None for a missing one, which is lower than all rays."""
         rows = self.obstacles.view
-        # Candidates allow for motion, not for an object that fell, or came back.
-        height_m = NOWHERE_M if obstacle is None else obstacle.height_m
-        if rows.height[row] != height_m:
-            rows.height[row], rows.known_x[row] = height_m, FAR_M
+        rows.height[row] = NOWHERE_M if obstacle is None else obstacle.height_m
         if obstacle is None:
             return
         if isinstance(obstacle, DiscObstacle):

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from thymio_sim_ros.sim.kernel.memory import KernelMemory
 from thymio_sim_ros.sim.model.robot_state import RobotState
 from thymio_sim_ros.sim.raycast import rays
-from thymio_sim_ros.sim.raycast.obstacle_table import ObstacleTable
-from thymio_sim_ros.sim.raycast.rays import Candidates, Limits, Mounts, Rays
+from thymio_sim_ros.sim.raycast.obstacle_table import FAR_M, ObstacleTable
+from thymio_sim_ros.sim.raycast.rays import Candidates, Limits, Mounts, Near, Rays
 from thymio_sim_ros.sim.raycast.scalar import Obstacle
 
 __all__ = ["Fan", "Raycaster"]
@@ -72,7 +72,7 @@ class Raycaster:
         """A function that casts the rays of a fan, and the array to which it writes their lengths.
 
         The array has the shape (robots, sensors, rays); its values are in m, inf for a ray that meets nothing. Fallen
-        robots neither detect anything nor are detected. At most one fan may be in use at a time.
+        robots neither detect anything nor are detected.
         """
         memory, table = self._memory, self._table
         _, sensors, rays_per_sensor = fan.directions.shape
@@ -88,10 +88,11 @@ class Raycaster:
         distances = memory.array((self._count, sensors, rays_per_sensor), "float64")
         limits = Limits(memory, 1)
         limits.range[0], limits.reach[0], limits.height[0] = fan.range_m, fan.reach_m, fan.height_m
-        candidates = Candidates(memory, self._count)
+        candidates, known = Candidates(memory, self._count), Near(memory, table.obstacles.count)
+        known.x[:] = FAR_M
         near = memory.array(self._count * table.obstacles.count, "int32")
         call = memory.bind(
-            rays.cast, self._robots, table.obstacles, table.planes, mounts, directions, limits, candidates, near,
-            distances,
+            rays.cast, self._robots, table.obstacles, table.planes, mounts, directions, limits, known, candidates,
+            near, distances,
         )  # fmt: skip
         return call, distances

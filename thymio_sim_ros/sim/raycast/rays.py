@@ -1,8 +1,8 @@
 """Kernels: the distances of the rays of all robots. `raycast.scalar` has the same for single rays, and the derivations.
 
-A kernel keeps a list of candidates, pairs of a robot and an obstacle that are near each other with a margin; it finds
-them again when something has moved by a third of the margin. The rays of a robot are computed in the frame of each
-candidate, and only for sensors that are near it and not turned away.
+A kernel keeps a list of candidates for each fan, pairs of a robot and an obstacle that are near each other with a
+margin; it finds them again when something has moved by a third of the margin, fallen or come back. The rays of a robot
+are computed in the frame of each candidate, and only for sensors that are near it and not turned away.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from thymio_sim_ros.sim.raycast.obstacle_table import (
     Planes,
 )
 
-__all__ = ["Candidates", "Limits", "Mounts", "Rays", "cast"]
+__all__ = ["Candidates", "Limits", "Mounts", "Near", "Rays", "cast"]
 
 _FAR = math.inf
 _TINY = 1e-300
@@ -69,6 +69,19 @@ class Limits(Record):
     """Distance of the farthest end of a ray from the robot's origin, at most, m."""
     height: Floats
     """Height of the rays above the floor, m; lower obstacles are not detected."""
+
+
+class Near(Record):
+    """The obstacles as they were when the candidates of a fan were determined."""
+
+    x: Floats
+    """Position, m; FAR_M if the candidates are out of date."""
+    y: Floats
+    height: Floats
+    """Height, m."""
+    reach_x: Floats
+    """Distance along the world's axes within which a robot may detect it, with a margin, m."""
+    reach_y: Floats
 
 
 class Candidates(Record):
@@ -158,12 +171,13 @@ def _place_hulls(robots: RobotState, obstacles: Obstacles, count: int) -> None:
 
 
 @kernel
-def _is_stale(obstacles: Obstacles) -> int:
-    """Whether something has moved too far for the list of candidates."""
+def _is_stale(obstacles: Obstacles, known: Near) -> int:
+    """Whether something has moved too far for the list of candidates, fallen or come back."""
     for row in range(obstacles.count):
         if (
-            abs(obstacles.x[row] - obstacles.known_x[row]) > _MOVE_M
-            or abs(obstacles.y[row] - obstacles.known_y[row]) > _MOVE_M
+            abs(obstacles.x[row] - known.x[row]) > _MOVE_M
+            or abs(obstacles.y[row] - known.y[row]) > _MOVE_M
+            or obstacles.height[row] != known.height[row]
         ):
             return 1
     return 0
@@ -171,15 +185,16 @@ def _is_stale(obstacles: Obstacles) -> int:
 
 @kernel
 def _find_candidates(
-    robots: RobotState, obstacles: Obstacles, limits: Limits, candidates: Candidates, near: Ints
+    robots: RobotState, obstacles: Obstacles, known: Near, limits: Limits, candidates: Candidates, near: Ints
 ) -> None:
     """List the obstacles that each robot may detect."""
     reach = limits.reach[0]
     height = limits.height[0]
     first_hull = obstacles.count - candidates.count
     for row in range(obstacles.count):
-        obstacles.known_x[row] = obstacles.x[row]
-        obstacles.known_y[row] = obstacles.y[row]
+        known.x[row] = obstacles.x[row]
+        known.y[row] = obstacles.y[row]
+        known.height[row] = obstacles.height[row]
         # Half size of the bounding box: that of the circle around it, as what moves may turn. The box of what never
         # turns is smaller, except for a disc.
         half_x = obstacles.half_x[row]
@@ -192,8 +207,8 @@ def _find_candidates(
         if obstacles.is_fixed[row] == 1:
             along_x = min(half, c * half_x + s * half_y)
             along_y = min(half, s * half_x + c * half_y)
-        obstacles.reach_x[row] = along_x + reach + _MARGIN_M
-        obstacles.reach_y[row] = along_y + reach + _MARGIN_M
+        known.reach_x[row] = along_x + reach + _MARGIN_M
+        known.reach_y[row] = along_y + reach + _MARGIN_M
     found = 0
     for robot in range(candidates.count):
         candidates.first[robot] = found
@@ -204,8 +219,8 @@ def _find_candidates(
         y = robots.y[robot]
         for row in range(obstacles.count):
             if (
-                abs(x - obstacles.x[row]) <= obstacles.reach_x[row]
-                and abs(y - obstacles.y[row]) <= obstacles.reach_y[row]
+                abs(x - obstacles.x[row]) <= known.reach_x[row]
+                and abs(y - obstacles.y[row]) <= known.reach_y[row]
                 and obstacles.height[row] >= height
                 and row != first_hull + robot
             ):
@@ -222,6 +237,7 @@ def cast(
     mounts: Mounts,
     rays: Rays,
     limits: Limits,
+    known: Near,
     candidates: Candidates,
     near: Ints,
     distances: Floats,
@@ -235,14 +251,15 @@ def cast(
         mounts: sensors of a robot.
         rays: rays of a robot.
         limits: range and height of the rays.
-        candidates: one element for each robot; written, as is `near`.
+        known: one element for each obstacle; written, as are `candidates` and `near`.
+        candidates: one element for each robot.
         near: rows of the candidates, shape (robots * obstacles,).
         distances: result.
     """
     count = candidates.count
     _place_hulls(robots, obstacles, count)
-    if _is_stale(obstacles) == 1:
-        _find_candidates(robots, obstacles, limits, candidates, near)
+    if _is_stale(obstacles, known) == 1:
+        _find_candidates(robots, obstacles, known, limits, candidates, near)
     # Locals: WebAssembly reads an element of a record from memory each time.
     range_m = limits.range[0]
     reach_m = limits.reach[0]

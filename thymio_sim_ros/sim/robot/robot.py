@@ -11,6 +11,7 @@ from thymio_sim_ros.sim.mechanics.edge_fall import EdgeFall
 from thymio_sim_ros.sim.mechanics.wheels import Wheels
 from thymio_sim_ros.sim.model.clock import SimClock
 from thymio_sim_ros.sim.model.geometry import LEVEL, Point, Pose, Tilt, Twist
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.noise import Noise
 from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.model.readings import Reading
@@ -34,8 +35,8 @@ class SharedState:
     """State that all robots of a world share."""
 
     __slots__ = (
-        "_audible", "_sounds", "_sounds_ns", "busy", "clock", "ground", "is_noisy", "physics", "proximity_model",
-        "robots", "seed", "woken",
+        "_audible", "_sounds", "_sounds_ns", "busy", "clock", "ground", "is_noisy", "lidar", "physics",
+        "proximity_model", "robots", "seed", "woken",
     )  # fmt: skip
 
     def __init__(
@@ -48,9 +49,10 @@ class SharedState:
         proximity_model: str,
         seed: int,
         is_noisy: bool,
+        lidar: Lidar | None,
     ) -> None:
         self.clock, self.ground, self.physics, self.proximity_model = clock, ground, physics, proximity_model
-        self.seed, self.is_noisy = seed, is_noisy
+        self.seed, self.is_noisy, self.lidar = seed, is_noisy, lidar
         self.robots = robots
         self.busy: dict[Robot, None] = {}
         """Robots with plug-ins to update in the next tick."""

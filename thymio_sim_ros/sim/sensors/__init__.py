@@ -39,6 +39,7 @@ class Sensor:
             all of them, in order. Called again when robots are added or removed. Such a sensor is not woken to measure.
         is_stateless: Whether a measurement depends on the present alone, not on memory: one that is left out then makes
             no difference to later ones, and it is left out when its reading is not wanted.
+        is_add_on: Whether a robot has it only in a world with that option (`World`), such as the lidar.
         on_wake: Called instead of `measure` when the sensor is woken; it usually writes to `view.memory`.
         label: Heading of its values in viewers; its name if empty.
         values: The rows that viewers show, for the words of a reading in order; None for a row for each variable,
@@ -56,6 +57,7 @@ class Sensor:
     wakes_on: tuple[type[Any], ...] = ()
     prepare_all: Callable[[BatchSensorView], Callable[[], Sequence[Reading | None]]] | None = None
     is_stateless: bool = False
+    is_add_on: bool = False
     on_wake: Callable[[SensorView], None] | None = None
     label: Label = field(default="", hash=False)
     values: tuple[DisplayedValue, ...] | None = field(default=None, hash=False)

@@ -32,6 +32,7 @@ __all__ = ["POSE_SENSOR", "TransformOptions", "Transforms", "frames_of", "origin
 class TransformOptions:
     """Whether to publish `map → odom`, wheel frames and fixed frames, and whether in each robot's namespace.
 
+    `has_lidar`: whether the robots have a lidar.
     `is_localized`: whether `map → odom` compensates the drift of the odometry; else it stays as at the start.
     """
 
@@ -39,6 +40,7 @@ class TransformOptions:
     publish_wheels: bool = True
     publish_static: bool = True
     namespaced: bool = False
+    has_lidar: bool = False
     is_localized: bool = True
 
 
@@ -127,7 +129,7 @@ class Transforms:
             base = names.frame("base_link")
             fixed = [
                 Transform(0, base, names.frame(frame.name), frame.position, frame.quaternion)
-                for frame in fixed_frames()
+                for frame in fixed_frames(has_lidar=self._options.has_lidar)
             ]
             self._static.add(self._topic(names, self._static), fixed)
         self._static.flush()

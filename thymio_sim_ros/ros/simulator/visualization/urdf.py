@@ -9,13 +9,16 @@ import itertools
 import math
 from dataclasses import dataclass
 
-from thymio_sim_ros.ros.interface.names import PROXIMITY, SIDES, RobotNames
+from thymio_sim_ros.ros.interface.names import PROXIMITY, SCAN_FRAME, SIDES, RobotNames
 from thymio_sim_ros.sim.model import robot_constants
+from thymio_sim_ros.sim.model.lidar import LIDAR_HEIGHT_M, LIDAR_PLACE
 
 LASER_HEIGHT_M = 0.035
 GROUND_SENSOR_HEIGHT_M = 0.009
 GROUND_CLEARANCE_M = 0.008
 BUTTONS_X_M = 0.048
+LIDAR_HEAD_M = (0.02, 0.016)
+"""Radius and height of the head of the lidar, only drawn."""
 FRONT_STEPS = 6
 WHEEL_SIDE = {"left": 1.0, "right": -1.0}
 
@@ -41,7 +44,7 @@ class FixedFrame:
         )
 
 
-def fixed_frames() -> tuple[FixedFrame, ...]:
+def fixed_frames(*, has_lidar: bool = False) -> tuple[FixedFrame, ...]:
     """Return the frames of the simulated sensors, x along the viewing direction."""
     frames = [FixedFrame("base_footprint", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
     for name, (x_m, y_m, yaw_rad) in zip(PROXIMITY, robot_constants.PROXIMITY_POSES, strict=True):
@@ -51,6 +54,8 @@ def fixed_frames() -> tuple[FixedFrame, ...]:
     for side, (x_m, y_m) in zip(SIDES, robot_constants.GROUND_SENSORS, strict=True):
         frames.append(FixedFrame(f"ground_{side}_link", (x_m, y_m, GROUND_SENSOR_HEIGHT_M), (0.0, math.pi / 2, 0.0)))
     frames.append(FixedFrame("laser_link", (0.0, 0.0, LASER_HEIGHT_M), (0.0, 0.0, 0.0)))
+    if has_lidar:
+        frames.append(FixedFrame(SCAN_FRAME, (*LIDAR_PLACE, LIDAR_HEIGHT_M), (0.0, 0.0, 0.0)))
     return tuple(frames)
 
 
@@ -59,8 +64,8 @@ def wheel_position(side: str) -> tuple[float, float, float]:
     return (0.0, WHEEL_SIDE[side] * robot_constants.WHEEL_TRACK_M / 2, robot_constants.WHEEL_RADIUS_M)
 
 
-def urdf(names: RobotNames) -> str:
-    """Return the URDF of one robot, with its prefix on link and joint names."""
+def urdf(names: RobotNames, *, has_lidar: bool = False) -> str:
+    """Return the URDF of one robot, with its prefix on link and joint names; `has_lidar`: with one on its back."""
     height = robot_constants.BODY_HEIGHT_M
     parts = [
         '<?xml version="1.0"?>',
@@ -76,6 +81,7 @@ def urdf(names: RobotNames) -> str:
             for rear, front, width in _slabs()
         ),
         _visual((BUTTONS_X_M, 0, height), _box(0.045, 0.045, 0.004), "gray"),
+        *([_visual((*LIDAR_PLACE, height + LIDAR_HEAD_M[1] / 2), _cylinder(*LIDAR_HEAD_M), "gray")] * has_lidar),
         "</link>",
     ]
     for side in SIDES:
@@ -84,13 +90,13 @@ def urdf(names: RobotNames) -> str:
         radius, thickness = robot_constants.WHEEL_RADIUS_M, robot_constants.WHEEL_WIDTH_M
         parts += [
             f'<link name="{link}">',
-            _visual((0, 0, 0), f'<cylinder radius="{radius}" length="{thickness}"/>', "gray", roll=math.pi / 2),
+            _visual((0, 0, 0), _cylinder(radius, thickness), "gray", roll=math.pi / 2),
             _visual((0, 0, 0), _box(radius * 1.7, thickness * 1.05, radius * 0.3)),
             "</link>",
             f'<joint name="{joint}" type="continuous"><parent link="{names.frame("base_link")}"/>',
             f'<child link="{link}"/><origin xyz="{x} {y} {z}"/><axis xyz="0 1 0"/></joint>',
         ]
-    for frame in fixed_frames():
+    for frame in fixed_frames(has_lidar=has_lidar):
         xyz, rpy = (" ".join(f"{v:.6g}" for v in vector) for vector in (frame.position, frame.rotation))
         link = names.frame(frame.name)
         parts.append(f'<link name="{link}"/>')
@@ -104,6 +110,10 @@ def urdf(names: RobotNames) -> str:
 
 def _box(x: float, y: float, z: float) -> str:
     return f'<box size="{x:.4f} {y:.4f} {z:.4f}"/>'
+
+
+def _cylinder(radius: float, length: float) -> str:
+    return f'<cylinder radius="{radius}" length="{length}"/>'
 
 
 def _slabs() -> list[tuple[float, float, float]]:
