@@ -18,8 +18,9 @@ def suite(ros, bridge, request):
     playground, robots = getattr(request, "param", ("line", [""]))
     from thymio_sim_ros.ros.aseba.node import AsebaRuntime, RuntimeParams
     from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
+    from thymio_sim_ros.ros.simulator.parameters import LidarParams
 
-    ros.live(Simulator(ros.context, SimulatorParams(playground=playground)))
+    ros.live(Simulator(ros.context, SimulatorParams(playground=playground, lidar=LidarParams(enabled=True))))
     ros.live(AsebaRuntime(ros.context, RuntimeParams(robots=robots, path="line_follower"), use_sim_time=True))
     with Studio(bridge(use_sim_time=True).port, ros.until) as studio:
         yield studio

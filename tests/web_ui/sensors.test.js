@@ -41,7 +41,7 @@ const DECLARED = [
 const key = (/** @type {string} */ name) => name;
 
 test("every value is shown in SI units beside Thymio's integer, ready for a spreadsheet", () => {
-  const lines = asText(groupsOf(key, "en", DECLARED), ROBOT).split("\n").map((line) => line.split("\t")); // prettier-ignore
+  const lines = asText(groupsOf({ robotText: key, stageText: key }, "en", DECLARED), ROBOT).split("\n").map((line) => line.split("\t")); // prettier-ignore
   const find = (/** @type {string} */ label, group = "sensors.others") =>
     lines.find(([title, name]) => title === group && name === label)?.slice(2);
   assert.deepEqual(find("sensors.temperature"), ["22.1 °C", "221"]);
@@ -55,7 +55,7 @@ test("every value is shown in SI units beside Thymio's integer, ready for a spre
 });
 
 test("a robot without messages has empty values", () => {
-  const text = asText(groupsOf(key, "en", DECLARED), NEW_ROBOT);
+  const text = asText(groupsOf({ robotText: key, stageText: key }, "en", DECLARED), NEW_ROBOT);
   assert.ok(!text.includes("NaN") && !text.includes("undefined"));
 });
 
@@ -71,7 +71,7 @@ test("a sensor of a plug-in has the rows that it declares", () => {
   const robot = { ...NEW_ROBOT, raw: { compass: [-90, 1, 2, 3] } };
   /** @param {string} language @param {import("../../web_ui/state/robot.js").Robot} shown */
   const last = (language, shown = robot) => {
-    const groups = groupsOf(key, language, [...DECLARED, compass]);
+    const groups = groupsOf({ robotText: key, stageText: key }, language, [...DECLARED, compass]);
     assert.deepEqual(groups.at(-1)?.[1].map(({ full }) => full), [180, null]);
     return asText(groups, shown).split("\n").slice(-2);
   };
@@ -81,11 +81,11 @@ test("a sensor of a plug-in has the rows that it declares", () => {
 });
 
 test("the rows of built-in sensors keep their places and labels", () => {
-  const groups = groupsOf(key, "en", DECLARED);
+  const groups = groupsOf({ robotText: key, stageText: key }, "en", DECLARED);
   const titles = groups.map(([title]) => title);
   assert.deepEqual(titles.slice(4), ["sensors.acceleration", "sensors.others", "sensors.buttons"]);
   assert.deepEqual(groups[5][1].map(({ label }) => label).slice(0, 2), ["sensors.temperature", "sensors.microphone"]);
-  assert.equal(groupsOf(key, "en", []).length, 6);
+  assert.equal(groupsOf({ robotText: key, stageText: key }, "en", []).length, 6);
 });
 
 test("value labels are at the ends of the beams and beside the ground patches", () => {

@@ -30,6 +30,7 @@ _FRAMES = (
     "left_wheel_link",
     "right_wheel_link",
     "laser_link",
+    "base_scan",
     "ground_left_link",
     "ground_right_link",
     *(f"proximity_{name}_link" for name in _PROXIMITY),
@@ -81,6 +82,7 @@ def _scene(names: Names) -> Panel:
         names.of_world("_markers/objects"),
         names.topic("_pen/trail"),
         names.topic("_proximity/rays"),
+        names.topic("scan"),
     )
     return Panel(
         "3D",

@@ -4,6 +4,7 @@
 // several topics, or show a text instead of a number.
 
 import { BUTTONS, GROUND, PROXIMITY } from "../state/names.js";
+import { NEW_ROBOT } from "../state/robot.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
 /** @typedef {import("../state/index.js").SensorInfo} SensorInfo */
@@ -25,14 +26,23 @@ const SPEED_FULL = 500;
 const PWM_FULL = 801;
 const COMMAND_FULL = 127;
 const COMM_FULL = 1023;
+/** Parts of the turn, counter-clockwise from the front. */
+const LIDAR_SECTORS = [
+  { key: "nearest", from: 0, to: 1 },
+  { key: "front", from: -1 / 8, to: 1 / 8 },
+  { key: "left", from: 1 / 8, to: 3 / 8 },
+  { key: "back", from: 3 / 8, to: 5 / 8 },
+  { key: "right", from: 5 / 8, to: 7 / 8 },
+];
 
 /**
- * @param {Translate} t
+ * @param {{ robotText: Translate, stageText: Translate }} texts
  * @param {string} language
  * @param {readonly SensorInfo[]} sensors   declarations
+ * @param {Pick<Robot, "hasLidar">} [robot]
  * @returns {Group[]}
  */
-export function groupsOf(t, language, sensors) {
+export function groupsOf({ robotText: t, stageText }, language, sensors, { hasLidar } = NEW_ROBOT) {
   const others = new Map(sensors.map((sensor) => [sensor.name, sensor]));
   /**
    * The rows of a sensor that has its place and its label here.
@@ -45,8 +55,27 @@ export function groupsOf(t, language, sensors) {
     others.delete(name);
     return sensor === undefined ? [] : declaredRows(sensor, title, language);
   };
-  const groups = builtInGroups(t, placed).filter(([, rows]) => rows.length > 0);
+  const groups = builtInGroups(t, stageText, placed).filter(([, rows]) => rows.length > 0);
+  if (hasLidar) groups.push(lidarGroup(t));
   return [...groups, ...[...others.values()].map((sensor) => declaredGroup(sensor, language))];
+}
+
+/** The nearest distance that the lidar measured, all around and in four directions. @param {Translate} t @returns {Group} */
+function lidarGroup(t) {
+  const rows = LIDAR_SECTORS.map(({ key, from, to }) => ({
+    label: t(`lidar.${key}`),
+    /** @param {Robot} robot */
+    value: ({ scan }) => {
+      if (scan === null) return "";
+      const { length } = scan.ranges;
+      const beams = Array.from({ length: Math.ceil((to - from) * length) }, (_, at) => Math.round(from * length) + at);
+      const nearest = Math.min(...beams.map((beam) => scan.ranges[(beam + length) % length]));
+      return nearest === Infinity ? t("sensors.nothing") : `${(nearest * 100).toFixed(1)} cm`;
+    },
+    words: () => [],
+    full: null,
+  }));
+  return [t("sensors.lidar"), rows];
 }
 
 /** @param {SensorInfo} sensor @param {string} language @returns {Group} */
@@ -74,10 +103,11 @@ function declaredRows({ name, values }, title, language) {
 
 /**
  * @param {Translate} t
+ * @param {Translate} stageText
  * @param {(name: string, title: string) => Row[]} placed
  * @returns {Group[]}
  */
-function builtInGroups(t, placed) {
+function builtInGroups(t, stageText, placed) {
   return [
     [
       t("sensors.proximity"),
@@ -147,7 +177,7 @@ function builtInGroups(t, placed) {
     [
       t("sensors.buttons"),
       BUTTONS.map((name) => ({
-        label: t(`button.${name}`),
+        label: stageText(`button.${name}`),
         value: ({ buttons }) => t(buttons[name] ? "sensors.pressed" : "sensors.released"),
         words: ({ buttons }) => [Number(buttons[name])],
         full: 1,

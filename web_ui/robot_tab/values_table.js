@@ -17,6 +17,7 @@ const OPEN = "open";
 /** @param {Pick<import("../shell/context.js").Context, "text" | "language" | "announce" | "scene">} context */
 export function valuesTable({ text, language, announce, scene }) {
   const t = text("robot");
+  const stageText = text("stage");
   const table = new SensorTable(t);
   /** @type {Robot | null} */ let shown = null;
   const word = h("span", {}, t("numbers.copy"));
@@ -49,13 +50,15 @@ export function valuesTable({ text, language, announce, scene }) {
     scene.invalidate();
   });
   /** @type {readonly import("../state/index.js").SensorInfo[] | null} */ let declared = null;
+  let hadLidar = false;
   return {
     element,
     /** @param {Robot} robot @param {readonly import("../state/index.js").SensorInfo[]} sensors */
     show(robot, sensors) {
-      if (sensors !== declared) {
+      if (sensors !== declared || robot.hasLidar !== hadLidar) {
         declared = sensors;
-        table.setGroups(groupsOf(t, language, sensors));
+        hadLidar = robot.hasLidar;
+        table.setGroups(groupsOf({ robotText: t, stageText }, language, sensors, robot));
         setText(count, t("numbers.count", { count: table.cells.length }));
       }
       shown = robot;

@@ -10,8 +10,9 @@ import { yawOf } from "../state/robot.js";
 import { DESK, groundColor, wallColor } from "./colors.js";
 import { LIGHT } from "./lights.js";
 import { poseAt } from "./motion.js";
-import { BUTTON_PLACES, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
+import { BUTTON_PLACES, LIDAR_PLACE, LIGHTS, PROXIMITY_PLACES } from "./parts.js";
 import { MAX_RANGE_M } from "./rays.js";
+import { HEAD, scanEnds } from "./scan.js";
 import { drawSketch } from "./sketch.js";
 
 /** @typedef {import("../state/index.js").State} State */
@@ -25,6 +26,7 @@ const ZOOM_STEP = 1.15;
 const FOLLOW_M = 0.9; // height of the visible area while following a robot
 const ABOVE_M = 5;
 const HALF_BEAM = 0.15; // rad
+const DOT_M = 0.008; // where a beam of a lidar ended
 const WHITE = [252, 250, 246];
 
 export class FlatView {
@@ -210,6 +212,10 @@ function drawRobot(context, robot, sensors, color) {
       context.arc(x, y, length, yaw - HALF_BEAM, yaw + HALF_BEAM);
       context.fill();
     }
+    context.fillStyle = "rgb(239 125 46)";
+    const ends = robot.scan === null ? [] : scanEnds(robot.scan);
+    for (let at = 0; at < ends.length; at += 2)
+      context.fillRect(ends[at] - DOT_M / 2, ends[at + 1] - DOT_M / 2, DOT_M, DOT_M);
   }
   const lit = robot.leds.top ?? [0, 0, 0];
   const most = Math.max(...lit);
@@ -221,6 +227,10 @@ function drawRobot(context, robot, sensors, color) {
   context.stroke();
   context.fillStyle = "#45403b";
   for (const side of [1, -1]) context.fillRect(-0.022, side * 0.047 - 0.0075, 0.044, 0.015);
+  if (robot.hasLidar) {
+    context.fillStyle = `#${HEAD.color.toString(16)}`;
+    disc(context, LIDAR_PLACE.x, LIDAR_PLACE.y, HEAD.radius);
+  }
   for (const [name, { x, y }] of Object.entries(BUTTON_PLACES)) {
     context.fillStyle = robot.buttons[name] ? "#25225c" : "#99948d";
     disc(context, x, y, 0.005);

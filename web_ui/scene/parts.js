@@ -42,6 +42,9 @@ export const PROXIMITY_PLACES = /** @type {Record<string, Place & { yaw: number 
   )
 );
 
+/** Origin of the beams of a lidar (docs/robot.md). */
+export const LIDAR_PLACE = { x: 0.02, y: 0, z: 0.05 };
+
 export const GROUND_PLACES = /** @type {Record<string, Place>} */ ({
   [GROUND[0]]: { x: 0.072, y: 0.0115, z: 0 },
   [GROUND[1]]: { x: 0.072, y: -0.0115, z: 0 },

@@ -7,11 +7,12 @@ import { createBody, createFarBody } from "./body.js";
 import { createGroundPatches } from "./ground_patches.js";
 import { createGroundGlow, createHalos } from "./halos.js";
 import { createRays } from "./rays.js";
+import { createScan } from "./scan.js";
 import { createShadow } from "./shadow.js";
 import { createWheels } from "./wheels.js";
 
 /** @typedef {import("../state/robot.js").Robot} Robot */
-/** @typedef {import("./instances.js").Instances} Instances */
+/** @typedef {Pick<import("./instances.js").Instances, "place" | "show" | "dispose"> & { mesh: THREE.Object3D }} Part */
 /**
  * @typedef {object} Look
  * @property {Robot} robot
@@ -22,7 +23,7 @@ import { createWheels } from "./wheels.js";
 /** @typedef {{ look: Look, frame: THREE.Matrix4 }} DrawnRobot   the appearance of a robot, and its frame */
 /**
  * @typedef {object} Piece
- * @property {Instances[]} parts
+ * @property {Part[]} parts
  * @property {(slot: number, look: Look, before: Look | null) => void} show  before: what was shown in this slot, null: nothing
  * @property {(slot: number, frame: THREE.Matrix4) => void} [follow]  called before it is placed at another frame
  * @property {boolean} [isGlow]      soft light, which slow machines leave out
@@ -40,10 +41,11 @@ const FINE = /** @type {PieceFactory[]} */ ([
   createBody,
   createWheels,
   createHalos,
+  createScan,
   createRays,
   createGroundPatches,
 ]);
-const COARSE = /** @type {PieceFactory[]} */ ([createShadow, createGroundGlow, createFarBody, createRays, createGroundPatches]);
+const COARSE = /** @type {PieceFactory[]} */ ([createShadow, createGroundGlow, createFarBody, createScan, createRays, createGroundPatches]);
 
 export class RobotInstances {
   /** @param {{ fine: boolean }} how */

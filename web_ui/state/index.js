@@ -2,7 +2,7 @@
 // Pure: no clock, no socket, no DOM; messages carry everything that is needed.
 
 import { applyMarkers } from "./markers.js";
-import { PARAMETERS, TRANSFORMS, isSensed, splitTopic } from "./names.js";
+import { PARAMETERS, SCAN, TRANSFORMS, isSensed, splitTopic } from "./names.js";
 import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
 import { applyTransforms } from "./transforms.js";
 
@@ -211,7 +211,7 @@ const STEPS = /** @type {Record<string, (state: State, message: any) => State>} 
 function withoutStaleReadings(state, robot) {
   const known = state.robots[robot];
   if (known === undefined || isSensed(state, robot)) return state;
-  return { ...state, robots: { ...state.robots, [robot]: { ...known, proximity: {}, ground: {}, raw: {} } } };
+  return { ...state, robots: { ...state.robots, [robot]: { ...known, proximity: {}, ground: {}, raw: {}, scan: null } } };
 }
 
 /** @param {State} state @param {{ topics: string[] }} message @returns {State} */
@@ -222,6 +222,7 @@ function withChannels(state, { topics }) {
       return part?.name === wanted && part.robot !== null ? [part.robot] : [];
     });
   const simulated = robotsWith("_ground_truth/odom");
+  const scanned = robotsWith(SCAN);
   const programmed = robotsWith("_aseba/status");
   const real = robotsWith("odom").filter((name) => programmed.includes(name) && !simulated.includes(name));
   const there = [...simulated, ...real].filter((name) => isKnownRobot(state, name)).sort(byName);
@@ -229,7 +230,9 @@ function withChannels(state, { topics }) {
     there.map((name) => {
       const known = state.robots[name] ?? NEW_ROBOT;
       const isReal = real.includes(name);
-      return [name, known.isReal === isReal ? known : { ...known, isReal }];
+      const hasLidar = scanned.includes(name);
+      const isSame = known.isReal === isReal && known.hasLidar === hasLidar;
+      return [name, isSame ? known : { ...known, isReal, hasLidar, scan: hasLidar ? known.scan : null }];
     }),
   );
   const toAll = state.toAll && there.length > 1;

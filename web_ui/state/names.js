@@ -19,11 +19,15 @@ export const GLOBAL_TOPICS = [
   "/aseba_runtime/_behaviours",
 ];
 
+/** The topic of a lidar, which a simulated robot can have. */
+export const SCAN = "scan";
+
 /** Topics of one robot, relative to its namespace. */
 export const ROBOT_TOPICS = [
   "_ground_truth/odom",
   "odom",
   "joint_states",
+  SCAN,
   "_led/state",
   "_aseba/status",
   "_pen/trail",

@@ -15,6 +15,7 @@ import { BUTTONS } from "./names.js";
  * @property {string} line
  * @property {Readonly<Record<string, string>>} values  all values of the status message (docs/aseba_ros.md)
  */
+/** @typedef {{ ranges: ArrayLike<number>, angleMin: number, step: number }} Scan  meters, Infinity: nothing; radians */
 /**
  * @typedef {object} Robot
  * @property {PoseSample | null} previous
@@ -25,6 +26,8 @@ import { BUTTONS } from "./names.js";
  * @property {Record<string, number>} proximity                  meters, Infinity: nothing
  * @property {Record<string, number>} ground                     Range: ±Infinity
  * @property {Record<string, number[]>} raw                      Thymio integers by sensor
+ * @property {boolean} hasLidar
+ * @property {Scan | null} scan                                  the last of its lidar
  * @property {Record<string, boolean>} buttons
  * @property {readonly number[]} sound                           Hz, s, volume 0…1 of the current sound
  * @property {ArrayLike<number> | null} wave                     one period of its tones
@@ -44,6 +47,8 @@ export const NEW_ROBOT = {
   proximity: {},
   ground: {},
   raw: {},
+  hasLidar: false,
+  scan: null,
   buttons: Object.fromEntries(BUTTONS.map((name) => [name, false])),
   sound: [0, 0, 0],
   wave: null,
@@ -66,6 +71,10 @@ const READERS = /** @type {Record<string, (robot: Robot, value: any, leaf: strin
   "_led/state": (robot, value) => ({ ...robot, leds: splitGroups(value) }),
   proximity: (robot, value, leaf) => ({ ...robot, proximity: { ...robot.proximity, [leaf]: value.range } }),
   ground: (robot, value, leaf) => ({ ...robot, ground: { ...robot.ground, [leaf]: value.range } }),
+  scan: (robot, value) => ({
+    ...robot,
+    scan: { ranges: value.ranges, angleMin: value.angle_min, step: value.angle_increment },
+  }),
   buttons: (robot, value, leaf) => ({ ...robot, buttons: { ...robot.buttons, [leaf]: value.data } }),
   "_pen/trail": (robot, value) => ({ ...robot, trail: applyMarkers(robot.trail, value.markers) }),
   "_sound/state": (robot, value) => ({ ...robot, sound: value.data }),
