@@ -224,7 +224,7 @@ function defaultsOf(kind) {
 
 /** A value as a word of the page, such as a color or that none was chosen; a name stays. @param {import("../i18n/index.js").Translate} t @param {any} value */
 function wordFor(t, value) {
-  const key = value === "" ? "mission.anything" : `choice.${value}`;
+  const key = value === "" || value === null ? "mission.anything" : `choice.${value}`;
   const word = t(key);
   return word === key ? String(value) : word;
 }

@@ -80,7 +80,7 @@ export function choicesOf(kind, key, { items }) {
   if (key === "track") return [...optional, ...items.filter((item) => item.kind === "track").map(({ name }) => name)];
   if (key === "robot") return items.filter((item) => item.kind === "robot").map(({ name }) => name);
   const words = field.pattern?.split("|") ?? [];
-  return words.length > 1 && words.every((word) => /^\w+$/.test(word)) ? words : null;
+  return words.length > 1 && words.every((word) => /^\w*$/.test(word)) ? words : null;
 }
 
 /** Whether an item lies flat on the floor, as an area that a robot can reach. @param {Item} item */
