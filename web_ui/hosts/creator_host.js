@@ -146,7 +146,7 @@ export class CreatorHost {
     const { drafts } = this;
     if (drafts.list().some(({ id }) => drafts.read(id) === text)) return;
     try {
-      drafts.keep({ id: drafts.newId(), title: parse(text).title, inFile: false, text });
+      drafts.keep({ id: drafts.newId(), title: parseDraft(text).title, inFile: false, text });
     } catch {
       // It is in the link, and the simulator says what is wrong with it.
     }

@@ -46,26 +46,26 @@ export function unpack(bytes) {
   } catch (error) {
     throw new Fault("", error instanceof Error ? error.message : String(error), { word: "fault.zip" });
   }
-  const mission = objectIn(files, MISSION_FILE);
+  const mission = readObject(files, MISSION_FILE);
   const { playground: name, programs = {}, title } = mission;
-  const playground = parse(textIn(files, typeof name === "string" ? name : PLAYGROUND_FILE));
-  const texts = Object.fromEntries(Object.entries(programs).map(([language, path]) => [language, textIn(files, String(path))]));
+  const playground = parse(readText(files, typeof name === "string" ? name : PLAYGROUND_FILE));
+  const texts = Object.fromEntries(Object.entries(programs).map(([language, path]) => [language, readText(files, String(path))]));
   const found = missionOf(mission, playground, texts);
   if (found === null) throw new Fault(MISSION_FILE, describe(title), { word: "fault.form" });
   return withMission({ ...playground, title }, found);
 }
 
 /** @param {Record<string, Uint8Array>} files @param {string} name */
-function textIn(files, name) {
+function readText(files, name) {
   if (!Object.hasOwn(files, name)) throw new Fault(name, "–", { word: "fault.file", values: { name } });
   return strFromU8(files[name]);
 }
 
 /** @param {Record<string, Uint8Array>} files @param {string} name @returns {Record<string, any>} */
-function objectIn(files, name) {
+function readObject(files, name) {
   /** @type {unknown} */ let data;
   try {
-    data = JSON.parse(textIn(files, name));
+    data = JSON.parse(readText(files, name));
   } catch (error) {
     if (error instanceof Fault) throw error;
     throw new Fault(name, String(error), { word: "fault.json" });

@@ -18,7 +18,7 @@ from importlib import import_module
 from pathlib import Path
 
 from thymio_sim_ros import examples
-from thymio_sim_ros.bridge.access import TOKEN_VARIABLE
+from thymio_sim_ros.access.tokens import TOKEN_VARIABLE
 from thymio_sim_ros.cli.ros.membership import CONNECT_VARIABLE
 from thymio_sim_ros.cli.ros.workspace import Program, SourcePackage, packages, programs
 from thymio_sim_ros.portable_ros.source_packages import INDEX, PREFIXES, SOURCES
