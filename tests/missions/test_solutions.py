@@ -18,11 +18,17 @@ from thymio_sim_ros.missions.trial import judged_run
 
 MISSIONS = {each.name: each for step in shipped() for each in step.missions}
 ORDER = list(MISSIONS)
+NUMBER = 20
 NODE = "ros"
 SOLUTIONS = [(name, language) for name, each in MISSIONS.items() for language in each.mission.languages]
 STARTS = [(name, language) for name, each in MISSIONS.items() for language in each.mission.programs]
 OF_ASEBA = [pair for pair in SOLUTIONS if pair[1] != NODE]
 PLUGINS = {"vpl": "ThymioVisualProgramming", "blocks": "ThymioBlockly", "scratch": "ThymioBlockly"}
+
+
+def test_no_mission_is_forgotten() -> None:
+    assert len(MISSIONS) == NUMBER
+    assert all(set(each.mission.solutions) == set(each.mission.languages) for each in MISSIONS.values())
 
 
 @pytest.mark.parametrize(("name", "language"), OF_ASEBA)

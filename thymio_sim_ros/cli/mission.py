@@ -93,7 +93,7 @@ def _list(language: str) -> str:
             stars = _NO_STAR * (1 + len(each.mission.stars))
             titles = each.mission.titles
             lines.append(
-                f"  {each.name:<12} {stars:<3} {titles.get(language, titles['en'])}"
+                f"  {each.name:<14} {stars:<3} {titles.get(language, titles['en'])}"
                 f" ({', '.join(each.mission.languages)})"
             )
     return "\n".join(lines)
