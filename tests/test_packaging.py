@@ -144,11 +144,13 @@ def test_a_launcher_starts_the_console_script_of_its_own_installation(tmp_path: 
 
 def test_both_installers_fill_the_same_folders() -> None:
     shared = _pyproject()["tool"]["hatch"]["build"]["targets"]["wheel"]["shared-data"]
-    expected = {
-        target if (ROOT / source).is_dir() else str(Path(target).parent)
-        for source, target in shared.items()
-        if (ROOT / source).exists()
-    }
+    expected: set[str] = set()
+    for source, target in shared.items():
+        if (ROOT / source).is_dir():
+            inner = [folder for folder in (ROOT / source).rglob("*/") if folder.name != "__pycache__"]
+            expected |= {target, *(f"{target}/{folder.relative_to(ROOT / source)}" for folder in inner)}
+        elif (ROOT / source).exists():
+            expected.add(str(Path(target).parent))
     assert expected == {folder for folder in _data_files() if not folder.startswith(f"share/{NAME}/web_ui")}
 
 

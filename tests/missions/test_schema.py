@@ -14,7 +14,7 @@ from thymio_sim_ros.missions.schema import schema
 ROOT = Path(__file__).parents[2]
 COURSE = ROOT / "docs" / "course"
 MISSIONS = sorted(COURSE.glob("*/mission.json"))
-SCHEMA = json.loads((ROOT / "missions" / "mission.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((ROOT / "playgrounds" / "missions" / "mission.schema.json").read_text(encoding="utf-8"))
 
 
 def test_the_published_schema_is_valid_and_the_one_of_the_reader() -> None:

@@ -9,7 +9,7 @@ import pytest
 from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.missions.shipped import find_mission, index, shipped
 
-FOLDER = Path(__file__).parents[2] / "missions"
+FOLDER = Path(__file__).parents[2] / "playgrounds" / "missions"
 
 
 def test_the_index_lists_each_mission_file_once_and_in_order() -> None:

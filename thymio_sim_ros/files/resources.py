@@ -57,7 +57,8 @@ def playgrounds() -> dict[str, Path]:
 
 def missions_folder() -> Path | None:
     """Folder of the shipped missions, or None if they are not installed."""
-    return next((root / "missions" for root in _roots() if (root / "missions" / "index.json").is_file()), None)
+    folders = (root / "playgrounds" / "missions" for root in _roots())
+    return next((folder for folder in folders if (folder / "index.json").is_file()), None)
 
 
 def behaviours() -> dict[str, Path]:
