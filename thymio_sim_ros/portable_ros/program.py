@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import runpy
 import sys
-import threading
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
@@ -16,7 +15,7 @@ _NOT_ITS_OWN = (__file__, "<frozen runpy>", runpy.__file__)
 
 
 def run_program(target: str, arguments: Sequence[str], *, is_module: bool) -> int:
-    """Run a file, or a module, as the main program, until its threads have ended, too; return the exit code.
+    """Run a file, or a module, as the main program; return the exit code. Python waits for its threads when it ends.
 
     An exception is printed as Python prints it, from the program on. The import hook has to be installed. Raises what
     ends programs: SystemExit and KeyboardInterrupt.
@@ -33,8 +32,6 @@ def run_program(target: str, arguments: Sequence[str], *, is_module: bool) -> in
         trace = _from_program(error.__traceback__)
         sys.excepthook(type(error), error.with_traceback(trace), trace)
         return _FAILED
-    finally:
-        _join_threads()
     return 0
 
 
@@ -43,10 +40,3 @@ def _from_program(trace: TracebackType | None) -> TracebackType | None:
     while trace is not None and trace.tb_frame.f_code.co_filename in _NOT_ITS_OWN:
         trace = trace.tb_next
     return trace
-
-
-def _join_threads() -> None:
-    """Wait for the threads of the program, as the end of the interpreter does."""
-    for thread in threading.enumerate():
-        if thread is not threading.current_thread() and not thread.daemon:
-            thread.join()

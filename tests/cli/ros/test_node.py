@@ -61,6 +61,7 @@ def test_a_wrong_address_is_refused_with_what_is_expected(url: str, capsys: pyte
             0,
             "end\n",
         ),
+        ("from concurrent.futures import ThreadPoolExecutor\nThreadPoolExecutor().submit(print, 'pool')", 0, "pool\n"),
     ],
 )
 def test_a_program_ends_as_with_python(program: str, code: int, printed: str, tmp_path: Path) -> None:

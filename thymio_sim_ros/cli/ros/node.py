@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import atexit
 import itertools
 from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 from thymio_sim_ros import course_packages
@@ -75,10 +77,22 @@ def _split(words: Iterable[str]) -> tuple[list[str], list[str]]:
 
 
 def _run_connected(options: argparse.Namespace, target: str, arguments: Sequence[str]) -> int:
+    """Run the program; the connection lasts until its threads have ended, and its pools of threads.
+
+    Python waits for both when it ends, then it calls what `atexit` has. Ctrl-C ends this process by its signal, without
+    all that.
+    """
     from thymio_sim_ros.portable_ros.program import run_program
 
-    with connected(options.connect, options.token, "node", waits=True), interruptible():
+    connection = ExitStack()
+    connection.enter_context(connected(options.connect, options.token, "node", waits=True))
+    connection.enter_context(interruptible())
+    atexit.register(connection.close)
+    try:
         return run_program(target, arguments, is_module=options.module is not None)
+    except KeyboardInterrupt:
+        connection.close()
+        raise
 
 
 def _parser() -> argparse.ArgumentParser:
