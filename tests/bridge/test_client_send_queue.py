@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-
 import pytest
 
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, Message
@@ -18,7 +16,9 @@ class Ends:
     def __init__(self) -> None:
         self.buffered = 0
         self.aborts = 0
-        self.queue = ClientSendQueue(LIMIT, warning=WARNING, buffered=lambda: self.buffered, abort=self.abort)
+        self.queue = ClientSendQueue(
+            LIMIT, warning=WARNING, buffered=lambda: self.buffered, flush=lambda: None, abort=self.abort
+        )
 
     def abort(self) -> None:
         self.aborts += 1
@@ -26,8 +26,9 @@ class Ends:
     def all(self) -> list[Message]:
         """All messages that wait."""
         found = []
-        while (message := self.queue.pop()) is not None:
-            found.append(message)
+        while messages := self.queue.take(1):
+            found += messages
+        assert self.queue.is_empty
         return found
 
 
@@ -75,15 +76,11 @@ def test_a_client_with_too_many_control_messages_is_disconnected(ends: Ends) -> 
     assert ends.queue.size == 9 * LIMIT
 
 
-@pytest.mark.parametrize("buffered", [0, LIMIT + 1])
-def test_who_waits_gets_a_message_that_comes_later(ends: Ends, buffered: int) -> None:
-    async def scenario() -> list[Message]:
-        waiting = asyncio.create_task(ends.queue.wait())
-        await asyncio.sleep(0)
-        assert not waiting.done()
-        ends.buffered = buffered
-        ends.queue.put_data(1, b"later")
-        await waiting
-        return ends.all()
-
-    assert asyncio.run(scenario())[-1] == b"later"
+def test_messages_are_taken_up_to_a_number_of_bytes(ends: Ends) -> None:
+    ends.queue.put_control(b"ab", b"cd", b"ef", b"gh")
+    assert ends.queue.take(3) == [b"ab", b"cd"]
+    assert ends.queue.take(1) == [b"ef"]
+    assert not ends.queue.is_empty
+    assert ends.queue.take(100) == [b"gh"]
+    assert ends.queue.take(100) == []
+    assert ends.queue.is_empty

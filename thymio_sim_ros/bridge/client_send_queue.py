@@ -7,7 +7,6 @@ disconnected if even control messages fill `_CONTROL_FACTOR` times the limit.
 
 from __future__ import annotations
 
-import asyncio
 import time
 from collections import deque
 from collections.abc import Callable
@@ -25,27 +24,39 @@ class Pong(bytes):
 
 
 class ClientSendQueue:
-    """Messages for one client. Only for the thread of the event loop."""
+    """Messages for one client. Only for the thread of the event loop.
 
-    def __init__(self, limit: int, *, warning: Message, buffered: Callable[[], int], abort: Callable[[], None]) -> None:
+    After messages have been added, `flush` is called once for all of them.
+    """
+
+    def __init__(
+        self,
+        limit: int,
+        *,
+        warning: Message,
+        buffered: Callable[[], int],
+        flush: Callable[[], None],
+        abort: Callable[[], None],
+    ) -> None:
         """`limit`: bytes above which only the newest data messages are kept.
 
         `warning` is sent to a client that is slow; `buffered` returns the bytes that its transport has not sent yet,
-        `abort` closes its connection at once.
+        `flush` takes messages and writes them, as far as the transport accepts them now, and sees to the others;
+        `abort` closes the connection at once.
         """
-        self._limit, self._warning, self.buffered, self.abort = limit, warning, buffered, abort
+        self._limit, self._warning = limit, warning
+        self._buffered, self.flush, self.abort = buffered, flush, abort
         self._waiting: deque[Message] = deque()
         self._size = 0
         """Bytes of `_waiting`; characters of texts count as one."""
         self._newest: dict[int, tuple[Message, ...]] = {}
         """The newest messages of subscriptions, which are sent after `_waiting`."""
-        self._arrived = asyncio.Event()
         self._next_warning_s = float("-inf")
 
     @property
     def size(self) -> int:
         """Bytes that wait here and in the transport, without the newest messages of subscriptions."""
-        return self._size + self.buffered()
+        return self._size + self._buffered()
 
     def put_control(self, *messages: Message) -> None:
         """Add messages that must not be lost, of any size; disconnect the client if too many bytes wait."""
@@ -56,11 +67,10 @@ class ClientSendQueue:
 
     def put_data(self, subscription_id: int, *messages: Message) -> None:
         """Add messages, or keep them as the newest of their subscription."""
-        if not self._newest and self._size + self.buffered() <= self._limit:
+        if not self._newest and self._size + self._buffered() <= self._limit:
             self._append(messages)
             return
         self._newest[subscription_id] = messages
-        self._arrived.set()
         now_s = time.monotonic()
         if now_s >= self._next_warning_s:
             self._next_warning_s = now_s + _WARNING_PERIOD_S
@@ -70,26 +80,26 @@ class ClientSendQueue:
         """Drop the messages kept for an ended subscription."""
         self._newest.pop(subscription_id, None)
 
-    def pop(self) -> Message | None:
-        """The next message; None if there is none."""
+    def take(self, size: int) -> list[Message]:
+        """The next messages, up to the one with which there are so many bytes; none if nothing waits."""
+        taken: list[Message] = []
         if not self._waiting:
             for messages in self._newest.values():
                 self._append(messages)
             self._newest.clear()
-            if not self._waiting:
-                return None
-        message = self._waiting.popleft()
-        self._size -= len(message)
-        return message
+        while size > 0 and self._waiting:
+            message = self._waiting.popleft()
+            self._size -= len(message)
+            size -= len(message)
+            taken.append(message)
+        return taken
 
-    async def wait(self) -> None:
-        """Wait until there is a message."""
-        while not self._waiting and not self._newest:
-            self._arrived.clear()
-            await self._arrived.wait()
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing waits."""
+        return not self._waiting and not self._newest
 
     def _append(self, messages: tuple[Message, ...]) -> None:
         for message in messages:
             self._waiting.append(message)
             self._size += len(message)
-        self._arrived.set()

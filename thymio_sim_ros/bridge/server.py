@@ -164,7 +164,13 @@ class BridgeServer:
             except Exception:
                 # An internal error must not end the loop; deliveries not made yet are lost.
                 self._log.exception("internal error (please report): %s failed", type(work).__name__)
+        self._flush()
         self._has_room.set()
+
+    def _flush(self) -> None:
+        """Send what has been queued for all clients."""
+        for queue in self._queues.values():
+            queue.flush()
 
     def _send_data(self, channel_id: int, time_ns: int, payload: bytes) -> None:
         """Hot path: no message is created for each subscriber."""
@@ -222,7 +228,11 @@ class BridgeServer:
         """Process a message of a client."""
         if is_rosbridge:
             self._receive_rosbridge(client, frame)
-            return
+        else:
+            self._receive_foxglove(client, frame)
+        self._flush()
+
+    def _receive_foxglove(self, client: int, frame: Message) -> None:
         try:
             message = self._decode(client, frame)
         except FrameError as error:

@@ -88,6 +88,7 @@ class BridgeSockets:
             bridge.settings.buffer_limit,
             warning=_slow_warning(is_rosbridge=is_rosbridge),
             buffered=transport.get_write_buffer_size,
+            flush=socket.flush,
             abort=transport.abort,
         )
         began_s = time.thread_time()

@@ -106,7 +106,11 @@ class WebSocketPeer:
         """The answer to the client's request."""
         self._socket, self._transport = socket, transport
         self._queue = ClientSendQueue(
-            max_unsent, warning=b"", buffered=transport.get_write_buffer_size, abort=transport.abort
+            max_unsent,
+            warning=b"",
+            buffered=transport.get_write_buffer_size,
+            flush=socket.flush,
+            abort=transport.abort,
         )
         self.visitor = visitor
         socket.send_from(self._queue)
@@ -124,6 +128,7 @@ class WebSocketPeer:
     def send(self, buffer: bytes) -> None:
         """Send a buffer as a frame."""
         self._queue.put_control(buffer)
+        self._queue.flush()
 
     @property
     def backlog(self) -> int:
