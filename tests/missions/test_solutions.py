@@ -8,6 +8,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+from PIL import Image
 
 from aseba_vm.languages import LANGUAGES
 from thymio_sim_ros.cli.main import main
@@ -19,6 +20,7 @@ from thymio_sim_ros.missions.trial import judged_run
 MISSIONS = {each.name: each for step in shipped() for each in step.missions}
 ORDER = list(MISSIONS)
 NUMBER = 20
+LARGEST_PICTURE = 10_000
 NODE = "ros"
 SOLUTIONS = [(name, language) for name, each in MISSIONS.items() for language in each.mission.languages]
 STARTS = [(name, language) for name, each in MISSIONS.items() for language in each.mission.programs]
@@ -86,6 +88,14 @@ def test_the_next_mission_is_that_of_the_list(name: str) -> None:
     expected = MISSIONS[following[0]].path if following else None
     found = MISSIONS[name].mission.next
     assert (Path(found).resolve() if found else None) == expected
+
+
+@pytest.mark.parametrize("name", MISSIONS)
+def test_it_has_a_small_picture(name: str) -> None:
+    path = Path(MISSIONS[name].mission.picture)
+    with Image.open(path) as picture:
+        assert picture.size == (240, 160)
+    assert path.stat().st_size < LARGEST_PICTURE
 
 
 @pytest.mark.parametrize("name", MISSIONS)
