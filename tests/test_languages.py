@@ -127,6 +127,7 @@ PARTS = {
     "editor": "editor",
     "examples": "examples",
     "hosts/share_host.js": "sharing",
+    "missions": "missions",
     "playground/labels.js": "creator",
     "playground_tab/reasons.js": "creator",
     "playground_tab/refusal.js": "creator",

@@ -9,7 +9,7 @@
 //   PageLanguage     language and texts
 //   Theme, MotionSetting    how the page looks and moves
 //   Workspace, Frame        the open tab, and the layout of the page
-//   PanelHost, ProgramHost, CreatorHost, ShareHost, TourHost, WelcomeHost    parts of the page
+//   PanelHost, ProgramHost, CreatorHost, MissionHost, ShareHost, TourHost, WelcomeHost    parts of the page
 
 import { tokenIn, resolveToken } from "./browser/access_token.js";
 import { watchDrops } from "./browser/file_drop.js";
@@ -24,6 +24,7 @@ import { Theme } from "./browser/theme.js";
 import { visitOptions } from "./browser/visit_options.js";
 import { MUTED_KEY } from "./header/sound.js";
 import { CreatorHost } from "./hosts/creator_host.js";
+import { MissionHost } from "./hosts/mission_host.js";
 import { ProgramHost } from "./hosts/program_host.js";
 import { ShareHost } from "./hosts/share_host.js";
 import { TourHost } from "./hosts/tour_host.js";
@@ -133,6 +134,7 @@ class Page {
 
     this.program = new ProgramHost({ slot: element("#panel-program"), client: () => this.client });
     this.creator = new CreatorHost({ element, scene: () => this.scene });
+    this.mission = new MissionHost(element('[data-slot="mission"]'));
     this.share = new ShareHost();
     this.tour = new TourHost();
     this.welcome = new WelcomeHost(element('[data-slot="welcome"]'));
@@ -217,7 +219,7 @@ class Page {
   }
 
   #createScene() {
-    const { store, creator, tour, welcome, panels, actions, graphics } = this;
+    const { store, creator, mission, tour, welcome, panels, actions, graphics } = this;
     return new SceneView({
       canvas: canvasElement("#view"),
       flatCanvas: canvasElement("#flat"),
@@ -228,6 +230,7 @@ class Page {
         creator.render();
         tour.render();
         welcome.render(store.state);
+        mission.render(store.state);
         panels.render(store.state);
       },
       press: ({ robot, button }, pressed) => {
@@ -244,7 +247,7 @@ class Page {
 
   /** Create all texts in the current language. */
   #build() {
-    const { pageLanguage, program, creator, share, tour, welcome, scene, graphics } = this;
+    const { pageLanguage, program, creator, mission, share, tour, welcome, scene, graphics } = this;
     const context = {
       text: pageLanguage.text,
       language: pageLanguage.language,
@@ -263,6 +266,7 @@ class Page {
       motion: this.motion,
       program,
       creator,
+      mission,
       share,
       tour,
       welcome,
@@ -274,7 +278,7 @@ class Page {
     this.#showTabs = fillTabs(element("#tabs"), context);
     this.#showBar = fillBottomBar(element("#bar"), context);
     this.panels.build(context);
-    for (const host of [program, creator, share, tour, welcome]) host.setContext(context);
+    for (const host of [program, creator, mission, share, tour, welcome]) host.setContext(context);
     if (!scene.painter.has3d) graphics.set("gone");
     else graphics.render();
     this.redraw();

@@ -107,3 +107,15 @@ def test_shipped_playgrounds_are_found(content):
     found = content.find("/playgrounds/line.json")
     assert found.media_type == "application/json"
     assert content.find("/playgrounds/line.json") is found
+
+
+def test_further_documents_are_found_after_the_files_of_the_page(folder):
+    pictures = {("missions", "one.png"): b"picture", ("index.html",): b"another"}
+    content = Content(folder, b"{}", lambda names: (pictures[names], ".png") if names in pictures else None)
+    found = content.find("/missions/one.png")
+    assert (found.body, found.media_type) == (b"picture", "image/png")
+    assert content.find("/missions/one.png") is found
+    assert b"Thymio" in content.find("/index.html").body
+    assert content.find("/missions/two.png") is None
+    pictures["missions", "one.png"] = b"changed"
+    assert content.find("/missions/one.png").tag != found.tag

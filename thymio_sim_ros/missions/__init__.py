@@ -11,6 +11,9 @@ schema        the JSON schema of files, for editors
 judge         a mission and an engine: checklist, stars, reasons
 trial         a whole run of a program
 shipped       the missions that are installed with the code, in order
+live          a mission on an engine that runs live: tries, trouble
+description   a mission and its try as JSON values
+documents     the list of missions and their pictures, for the server of the page
 lengths       how long a program is, in the unit of its language
 """
 

@@ -10,6 +10,7 @@ import gzip
 import hashlib
 import re
 import urllib.parse
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,7 +18,10 @@ from thymio_sim_ros.files.playground_index import PlaygroundIndex
 from thymio_sim_ros.sim.playground import declarations
 from thymio_sim_ros.sim.shapes import all_shapes
 
-__all__ = ["TYPES", "Content", "Document"]
+__all__ = ["TYPES", "Content", "Document", "FindMore"]
+
+FindMore = Callable[[Sequence[str]], tuple[bytes, str] | None]
+"""Body and ending of a document by the folder and name of its path; None if there is none."""
 
 # Not the table of the platform: it may have other types, and browsers reject a module with a wrong type.
 TYPES = {
@@ -58,11 +62,13 @@ class Document:
 class Content:
     """The built page in a folder, the shipped playgrounds as `/playgrounds/NAME.json`, and two documents of its own.
 
-    `/config.json` is given, `/shapes.json` declares the installed shapes.
+    `/config.json` is given, `/shapes.json` declares the installed shapes; further documents come from `find_more`.
     """
 
-    def __init__(self, folder: Path | None, config: bytes) -> None:
+    def __init__(self, folder: Path | None, config: bytes, find_more: FindMore = lambda names: None) -> None:
         """`folder` has the built page, None if it has not been built; `config` is the JSON text of `/config.json`."""
+        self._find_more = find_more
+        self._more: dict[tuple[str, ...], Document] = {}
         self._folder = None if folder is None else folder.resolve()
         self._config = _document(config, ".json")
         self._index = PlaygroundIndex()
@@ -88,7 +94,17 @@ class Content:
             return self._shapes
         if len(names) == 2 and names[0] == _PLAYGROUNDS and names[1].endswith(_PLAYGROUND_ENDING):
             return self._playground(names[1].removesuffix(_PLAYGROUND_ENDING))
-        return self._file(names or (_INDEX,))
+        return self._file(names or (_INDEX,)) or self._further(names)
+
+    def _further(self, names: tuple[str, ...]) -> Document | None:
+        found = self._find_more(names)
+        if found is None:
+            return None
+        body, ending = found
+        known = self._more.get(names)
+        if known is None or known.body != body:
+            known = self._more[names] = _document(body, ending)
+        return known
 
     @functools.cached_property
     def _shapes(self) -> Document:

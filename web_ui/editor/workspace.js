@@ -125,6 +125,19 @@ export class Workspace {
     this.#replace(this.tab, text === "" ? { ...blank(name), own: true } : opened(name, text));
   }
 
+  /**
+   * Show a program that is kept elsewhere, such as that of a mission, under this name.
+   *
+   * @param {string} title
+   * @param {string} text
+   */
+  show(title, text) {
+    const name = fileName(title);
+    const { current } = this;
+    const document = text === "" ? { ...blank(name), own: true } : opened(name, text);
+    if (current.name !== name || current.text !== document.text) this.#replace(this.tab, document);
+  }
+
   /** @param {string} title */
   #freeName(title) {
     const kept = [...this.fileStore.recent(), ...this.drafts.values()];

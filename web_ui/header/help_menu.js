@@ -10,7 +10,7 @@ import { menu } from "../ui/menu.js";
 const DOCUMENTATION = "./docs/index.html";
 
 /** @param {import("../shell/context.js").Context} context @returns {import("../shell/context.js").Panel} */
-export function helpMenuPanel({ actions, store, text, tour, welcome }) {
+export function helpMenuPanel({ actions, store, text, mission, tour, welcome }) {
   const t = text("page");
   const saveRun = async () => {
     const log = await actions.runLog();
@@ -27,6 +27,7 @@ export function helpMenuPanel({ actions, store, text, tour, welcome }) {
     label: t("help"),
     entries: () => /** @type {import("../ui/menu.js").Entry[]} */ ([
       { label: t("help.tour"), icon: "idea", attributes: { "data-help": "tour" }, act: () => void tour.open() },
+      { label: t("missions"), icon: "flag", attributes: { "data-help": "missions" }, act: () => void mission.openList() },
       { label: t("help.start"), icon: "robot", attributes: { "data-help": "start" }, act: () => welcome.open() },
       { label: t("help.keys"), icon: "keys", attributes: { "data-help": "keys" }, act: () => void welcome.openKeys() },
       {

@@ -91,6 +91,19 @@ export const LANGUAGES = [
   },
 ];
 
+/** Languages of missions that are a look of another one: its editor, and its empty sample. @type {Readonly<Record<string, { id: string, sample: string }>>} */
+const EDITORS = { scratch: { id: BLOCKS.id, sample: "scratch_start" } };
+
+/**
+ * The editors of the languages of a mission.
+ *
+ * @param {readonly string[] | null} languages   null: all
+ * @returns {readonly string[] | null}
+ */
+export function editorsOf(languages) {
+  return languages?.map((language) => EDITORS[language]?.id ?? language) ?? null;
+}
+
 /** Time without a further change until a text that was written is sent to the class. */
 const DRAFT_MS = 1000;
 const TOPIC = /^\/(?:[^/]+\/)?_aseba\/(?:target|variables|events)$|^\/aseba_runtime\/_behaviours$/;
@@ -115,6 +128,8 @@ export class ProgramHost {
     /** @type {LanguageChoice | null} */ this.choice = null;
     /** @type {ProgramTab | null} stays alive while other tabs are shown */ this.tab = null;
     /** @type {Context | null} */ this.context = null;
+    /** Called with the name of the document and its text when the user has written. @type {(name: string, text: string) => void} */
+    this.onWritten = () => {};
   }
 
   /** Whether the tab currently needs a topic: not before it is loaded, as a message would be lost. @param {string} topic */
@@ -163,6 +178,22 @@ export class ProgramHost {
   /** Open the tab with a program from elsewhere, beside what the user has. @param {string} name @param {string} text */
   async openBeside(name, text) {
     (await this.#selected())?.commands.openBeside(name, text);
+  }
+
+  /**
+   * Open the tab with a program that is kept elsewhere, such as that of a mission, or with an empty one. Returns the name
+   * of its document; "": it could not be opened.
+   *
+   * @param {string} language   one of a mission
+   * @param {string} title
+   * @param {string | null} text   null: empty
+   */
+  async openAs(language, title, text) {
+    const { id, sample } = EDITORS[language] ?? { id: language, sample: undefined };
+    const editor = LANGUAGES.find((each) => each.id === id);
+    const tab = await this.#selected();
+    if (editor === undefined || tab === null) return "";
+    return tab.commands.openAs(editor, title, text, sample);
   }
 
   /** Open the tab with a program file. @param {File} file */
@@ -223,7 +254,10 @@ export class ProgramHost {
     if (this.session === null) {
       const session = new module.EditorSession(localStore, Date.now, openPages(navigator.locks));
       this.session = session;
-      session.onWritten = (text) => this.#sendDraft(text);
+      session.onWritten = (text) => {
+        this.#sendDraft(text);
+        this.onWritten(session.workspace.current.name, text);
+      };
       followLocalStore((key) => session.workspace.storageChanged(key));
       meetOtherTabs(() => {
         const { store, text } = /** @type {Context} */ (this.context);

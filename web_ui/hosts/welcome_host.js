@@ -1,4 +1,4 @@
-// Integrates the first visit into the page: three ways to start over the scene, the offer of the tour, and what "?" opens.
+// Integrates the first visit into the page: four ways to start over the scene, the offer of the tour, and what "?" opens.
 // Loaded on demand; a visit without any of it loads nothing.
 
 import { localStore, trySetItem } from "../browser/local_storage.js";
@@ -27,7 +27,7 @@ export function isFirstVisit({ wanted, storage, entry }) {
 }
 
 /**
- * Whether the three starts can be shown now: they act on a robot, and lie over the scene.
+ * Whether the four starts can be shown now: they act on a robot, and lie over the scene.
  *
  * @param {Pick<State, "connection" | "identified" | "readOnly" | "robots">} state
  * @param {boolean} isBuilding   whether the creator shows its own playground
@@ -40,7 +40,7 @@ export class WelcomeHost {
   /** @param {HTMLElement} slot */
   constructor(slot) {
     this.slot = slot;
-    /** Whether the three starts are wanted. */
+    /** Whether the four starts are wanted. */
     this.isWanted = false;
     /** @type {Context | null} */ this.context = null;
     /** @type {Module | null} */ this.module = null;
@@ -64,19 +64,19 @@ export class WelcomeHost {
     this.#remove();
   }
 
-  /** Whether the three starts are shown. */
+  /** Whether the four starts are shown. */
   get isOpen() {
     return this.starts !== null;
   }
 
-  /** Show the three starts again. */
+  /** Show the four starts again. */
   open() {
     this.context?.workspace.select(null);
     this.isWanted = true;
     this.context?.scene.invalidate();
   }
 
-  /** Hide the three starts for good: only "?" shows them again. */
+  /** Hide the four starts for good: only "?" shows them again. */
   close() {
     if (!this.isWanted) return;
     this.isWanted = false;

@@ -14,6 +14,8 @@ import { RuntimeClient } from "./runtime_client.js";
 /** @typedef {import("../state/store.js").Store} Store */
 
 /** From rcl_interfaces/msg/ParameterType. */
+const NOT_SET = 0;
+const STRING = 4;
 const DOUBLE_ARRAY = 8;
 const MB = 1_000_000;
 /** Maximum size of a program file in bytes. */
@@ -34,6 +36,8 @@ const OCCUPIED = /: occupied by '(.*)'$/s;
 
 /** The service that has the log of the run. */
 export const RUN_LOG = "/simulator/get_run_log";
+/** The service that starts a mission. */
+export const START_MISSION = "/simulator/start_mission";
 /** The service that has the primitives of shapes. */
 export const PRIMITIVES = "/simulator/get_primitives";
 
@@ -208,6 +212,25 @@ export class Actions {
     await this.place(name, startOf(this.store.state, text, name));
   }
 
+  /**
+   * Start a mission: a shipped one by its name, or that of a file. Returns whether it was started.
+   *
+   * @param {string} name
+   * @param {Uint8Array} [content]   of a file
+   */
+  async startMission(name, content) {
+    const value = content === undefined ? { type: NOT_SET } : { type: STRING, string_value: dataUrl(name, content) };
+    const answer = await this.client.call(START_MISSION, { parameters: [{ name, value }] });
+    const { successful, reason } = answer.value?.results?.[0] ?? { successful: answer.ok, reason: answer.message };
+    this.#report(START_MISSION, { ok: successful, message: reason }, this.t("mission.refused"));
+    if (successful && this.store.state.simulator?.paused) await this.pause(false);
+    return successful;
+  }
+
+  endMission() {
+    return this.call("/simulator/end_mission");
+  }
+
   /** Start a built-in behavior on the addressed robots. @param {string} name */
   async loadExample(name) {
     const answer = await this.runtime.loadBuiltIn(this.owner, name, this.language());
@@ -247,11 +270,7 @@ export class Actions {
    */
   async loadPlayground(name, content, part = "") {
     this.store.dispatch({ type: "upload", what: "playground", name, text: "" });
-    const chosen = part === "" ? "" : `;part=${encodeURIComponent(part)}`;
-    const value =
-      content === undefined
-        ? name
-        : `data:application/octet-stream;name=${encodeURIComponent(name)}${chosen};base64,${base64(content)}`;
+    const value = content === undefined ? name : dataUrl(name, content, part);
     const isPresent = this.store.state.parameters[PARAMETERS.playground] === value;
     const answer = await this.client.setParameters([{ name: PARAMETERS.playground, value }]);
     if (answer.ok && isPresent) await this.reset();
@@ -333,6 +352,12 @@ export class Actions {
     this.store.dispatch({ type: "solved", cause });
     if (!ok) this.store.dispatch({ type: "notice", level: "error", text, technical, cause });
   }
+}
+
+/** A file as a text. @param {string} name @param {Uint8Array} content @param {string} [part]  name of one of several files in it */
+function dataUrl(name, content, part = "") {
+  const chosen = part === "" ? "" : `;part=${encodeURIComponent(part)}`;
+  return `data:application/octet-stream;name=${encodeURIComponent(name)}${chosen};base64,${base64(content)}`;
 }
 
 /** @param {Uint8Array} bytes */

@@ -96,6 +96,24 @@ export class ProgramCommands {
     this.back();
   }
 
+  /**
+   * Open a program that is kept elsewhere, or an empty one of a language. Returns the name of its document; "": it could
+   * not be opened.
+   *
+   * @param {import("../hosts/program_host.js").Language} language
+   * @param {string} title
+   * @param {string | null} text   null: empty
+   * @param {string} [sample]   the empty sample
+   */
+  async openAs(language, title, text, sample = EMPTY[0]) {
+    const module = text === null ? await this.loadLanguage(language) : null;
+    if (text === null && module === null) return "";
+    this.choice.forget();
+    this.workspace.show(title, text ?? module?.sampleText(sample, this.t) ?? "");
+    this.back();
+    return this.workspace.current.name;
+  }
+
   /** Begin with a program that was made from the open one, which is kept among the last programs. @param {string} text */
   beginFromThis(text) {
     const { name } = this.workspace.current;

@@ -58,8 +58,10 @@ export function programHead({ t, languages, choose, commands }) {
      * @param {boolean} facts.hasMistake
      * @param {boolean} facts.isStart     whether no program is shown, but the ways to begin one
      * @param {string} facts.shown        the language of the view
+     * @param {readonly string[] | null} facts.allowed   languages that a mission allows; null: all
      */
-    render({ reason, hasMistake, isStart, shown }) {
+    render({ reason, hasMistake, isStart, shown, allowed }) {
+      for (const each of choices) each.hidden = !(allowed?.includes(each.dataset.language ?? "") ?? true);
       for (const each of choices) setAttribute(each, "aria-pressed", String(!isStart && each.dataset.language === shown));
       lock(run, reason || (isStart ? t("new.title") : hasMistake ? t("editor.runBlocked") : ""));
       lock(stop, reason || (commands.can("stop") ? "" : t("editor.unavailable")));

@@ -86,11 +86,13 @@ export class StartPage {
    * @param {string} facts.reason   why no example can be started; empty: it can
    * @param {readonly StoredFile[]} facts.recent
    * @param {boolean} facts.canGoBack   whether there is a program to return to
+   * @param {readonly string[] | null} facts.allowed   languages that a mission allows; null: all
    */
-  render({ state, reason, recent, canGoBack }) {
+  render({ state, reason, recent, canGoBack, allowed }) {
     this.back.hidden = !canGoBack;
     this.examples.render(state, reason);
-    this.examplePart.hidden = state.behaviors.length === 0;
+    this.examplePart.hidden = state.behaviors.length === 0 || allowed !== null;
+    for (const each of this.sections) each.hidden = !(allowed?.includes(each.dataset.samples ?? "") ?? true);
     this.recentPart.hidden = recent.length === 0;
     const now = JSON.stringify(recent.map(({ name, time, unsaved }) => [name, time, unsaved]));
     if (now === this.#listed) return;

@@ -247,7 +247,8 @@ export class ProgramTab {
     const { status } = selection;
     this.#showStart(session.isChoosing || this.#isBeginning);
     const hasMistake = this.#view?.hasMistake() ?? false;
-    this.head.render({ reason, hasMistake, isStart: this.#isStartShown, shown: this.choice.shown });
+    const allowed = context.mission.editors;
+    this.head.render({ reason, hasMistake, isStart: this.#isStartShown, shown: this.choice.shown, allowed });
     this.file.render({ reason, isUnsaved: isUnsaved(current), hasMistake });
     this.badge.render({
       values: status?.values ?? {},
@@ -260,7 +261,7 @@ export class ProgramTab {
     this.foreign.render(selection.target?.program);
     this.languageBar.render();
     if (this.#isStartShown) {
-      this.start.render({ state, reason, recent: workspace.fileStore.recent(), canGoBack: !this.#isBeginning });
+      this.start.render({ state, reason, recent: workspace.fileStore.recent(), canGoBack: !this.#isBeginning, allowed });
     } else this.#view?.redraw();
   }
 

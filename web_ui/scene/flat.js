@@ -93,7 +93,8 @@ export class FlatView {
     const { x, y } = camera.position;
     // From here on in meters, y up.
     context.setTransform(scale, 0, 0, -scale, canvas.width / 2 - x * scale, canvas.height / 2 + y * scale);
-    const lowFirst = [...state.markers.values(), ...state.objects.values()].sort((a, b) => top(a) - top(b));
+    const shown = [state.markers, state.objects, state.missionMarkers].flatMap((markers) => [...markers.values()]);
+    const lowFirst = shown.sort((a, b) => top(a) - top(b));
     for (const marker of lowFirst) this.#marker(context, marker, changed);
     for (const robot of Object.values(state.robots)) {
       for (const stroke of robot.trail.values()) this.#marker(context, stroke, changed);

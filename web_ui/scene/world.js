@@ -28,8 +28,9 @@ export class World {
     this.surroundings = new Surroundings(groundChanged);
     this.playground = new PlaygroundModel(groundChanged, undefined, { isStill: true });
     this.objects = new PlaygroundModel(changed);
+    this.mission = new PlaygroundModel(changed);
     this.robots = new RobotsLayer({ scene: this.scene, labels, robotTitle, select });
-    for (const part of [this.surroundings, this.playground, this.objects, this.ghost, this.sketchModel]) {
+    for (const part of [this.surroundings, this.playground, this.objects, this.mission, this.ghost, this.sketchModel]) {
       this.scene.add(part.group);
     }
   }
@@ -50,6 +51,7 @@ export class World {
     const isOther = this.playground.update(state.markers);
     if (isOther) this.surroundings.update(sketch === null ? groundOf(state.markers.values()) : null);
     this.objects.update(state.objects);
+    this.mission.update(state.missionMarkers);
     this.ghost.update(dragController.dragged, dragController.mode);
     this.sketchModel.update(sketch);
     return isOther;

@@ -20,6 +20,7 @@
  * @property {import("../browser/visit_options.js").VisitOptions} visit
  * @property {import("../hosts/program_host.js").ProgramHost} program
  * @property {import("../hosts/creator_host.js").CreatorHost} creator
+ * @property {import("../hosts/mission_host.js").MissionHost} mission
  * @property {import("../hosts/share_host.js").ShareHost} share
  * @property {import("../hosts/tour_host.js").TourHost} tour
  * @property {import("../hosts/welcome_host.js").WelcomeHost} welcome

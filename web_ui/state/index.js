@@ -2,6 +2,7 @@
 // Pure: no clock, no socket, no DOM; messages carry everything that is needed.
 
 import { applyMarkers } from "./markers.js";
+import { missionMarkers } from "./mission.js";
 import { PARAMETERS, SCAN, TRANSFORMS, isSensed, splitTopic } from "./names.js";
 import { NEW_ROBOT, readStatus, reduceRobot } from "./robot.js";
 import { applyTransforms } from "./transforms.js";
@@ -67,6 +68,9 @@ import { applyTransforms } from "./transforms.js";
  * @property {boolean} sensorsShown   whether the sensor panel is open
  * @property {ReadonlyMap<string, Marker>} markers  static markers
  * @property {ReadonlyMap<string, Marker>} objects  movable objects and doors
+ * @property {import("./mission.js").Mission | null} mission   the open mission
+ * @property {import("./mission.js").Try | null} attempt   its present try
+ * @property {ReadonlyMap<string, Marker>} missionMarkers   zones of the mission, and the way of a try that is over
  * @property {Readonly<Record<string, Robot>>} robots
  * @property {Readonly<Record<string, Program>>} programs  by namespace of the runtime
  * @property {string} selected     name of the robot whose values are shown
@@ -126,6 +130,9 @@ export const INITIAL = {
   sensorsShown: false,
   markers: new Map(),
   objects: new Map(),
+  mission: null,
+  attempt: null,
+  missionMarkers: new Map(),
   robots: {},
   programs: {},
   selected: "",
@@ -270,6 +277,8 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs:
   [TRANSFORMS]: applyTransforms,
   "/_markers": (state, value) => ({ ...state, markers: applyMarkers(state.markers, value.markers) }),
   "/_markers/objects": (state, value) => ({ ...state, objects: applyMarkers(state.objects, value.markers) }),
+  "/simulator/_mission": (state, value) => withMission(state, JSON.parse(value.data), state.attempt),
+  "/simulator/_mission/try": (state, value) => withMission(state, state.mission, JSON.parse(value.data)),
   "/simulator/_state"(state, value) {
     const reported = JSON.parse(value.data);
     const simulator = {
@@ -303,6 +312,24 @@ const GLOBAL_STEPS = /** @type {Record<string, (state: State, value: any, nowMs:
     ),
   }),
 });
+
+/**
+ * A try of another mission does not count: both messages come in any order.
+ *
+ * @param {State} state
+ * @param {import("./mission.js").Mission | null} mission
+ * @param {import("./mission.js").Try | null} attempt
+ * @returns {State}
+ */
+function withMission(state, mission, attempt) {
+  const shown = mission !== null && attempt?.mission === mission.name ? attempt : null;
+  return { ...state, mission, attempt, missionMarkers: missionMarkers(mission, shown) };
+}
+
+/** The present try of the open mission. @param {State} state */
+export function attemptOf({ mission, attempt }) {
+  return mission !== null && attempt?.mission === mission.name ? attempt : null;
+}
 
 /** @param {string} wanted @param {Record<string, Robot>} robots */
 function selection(wanted, robots) {
@@ -409,6 +436,7 @@ export function snapshot(state) {
   return {
     ...state,
     markers: state.markers.size,
+    missionMarkers: [...state.missionMarkers.keys()],
     objects: [...state.objects.values()].map(({ ns, pose }) => ({ name: ns.slice(ns.indexOf("/") + 1), pose })),
     robot: visible(state.robots[state.selected]),
     program: programOf(state),

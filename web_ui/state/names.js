@@ -16,6 +16,8 @@ export const GLOBAL_TOPICS = [
   "/simulator/_state",
   "/simulator/_playgrounds",
   "/simulator/_sensors",
+  "/simulator/_mission",
+  "/simulator/_mission/try",
   "/aseba_runtime/_behaviours",
 ];
 

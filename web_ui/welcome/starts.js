@@ -1,4 +1,4 @@
-// The three ways to start, over the lower part of the scene, and the robot's greeting.
+// The four ways to start, over the lower part of the scene, and the robot's greeting.
 
 import { titleOf } from "../examples/index.js";
 import { unfoldTray } from "../stage/tray.js";
@@ -48,6 +48,8 @@ export class Starts {
     this.rosText = h("p", { class: "muted" });
     this.driveText = h("p", { class: "muted" });
     const driving = { type: "button", class: "btn you", "data-start": "drive", onclick: () => this.#drive() };
+    const choosing = { type: "button", class: "btn line", "data-start": "missions", onclick: () => void context.mission.openList() };
+    const missions = h("button", choosing, t("mission.do"));
     const programText = h("p", { class: "muted" }, t("program.text"));
     this.watch = h(
       "button",
@@ -62,6 +64,7 @@ export class Starts {
         "ul",
         { class: "welcome-cards" },
         card("pad", "welcome-you", t("drive"), this.driveText, h("button", driving, t("drive.do"))),
+        card("flag", "welcome-run", t("mission"), h("p", { class: "muted" }, t("mission.text")), missions),
         card("program", "welcome-act", t("program"), programText, this.#programMenu()),
         card("plug", "welcome-sense", t("ros"), this.rosText, ros),
       ),

@@ -34,6 +34,7 @@ from thymio_sim_ros.ros.rclpy_ext.node_runner import AnnouncedNode, StartError, 
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
 from thymio_sim_ros.ros.simulator.diagnostics import Diagnostics
 from thymio_sim_ros.ros.simulator.endpoints import SimulatorEndpoints
+from thymio_sim_ros.ros.simulator.mission_endpoints import MissionEndpoints
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams, LidarParams, SimulatorParams
 from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_engine
@@ -122,9 +123,11 @@ class Simulator:
         self.runner.start()
         if logged is not None:
             self.runner.step(logged.tick_at(values.replay_from))
-        self._services = WorldServices(self.control, self.runner, self.endpoints.robots, self._messages)
-        self._diagnostics = Diagnostics(self.node, self._messages, self._connections, self.endpoints.clock.conflict)
         self.parameter_callbacks = ParameterCallbacks(self.node, self.params, self.runner)
+        robots = self.endpoints.robots
+        self.missions = MissionEndpoints(self.control, self.runner, robots, self.parameter_callbacks)
+        self._services = WorldServices(self.control, self.runner, robots, self._messages, self.missions)
+        self._diagnostics = Diagnostics(self.node, self._messages, self._connections, self.endpoints.clock.conflict)
         self._interfaces: services.SimInterfaces | None = None
         if isinstance(self.control, LocalNode):
             self._parameter_services = ParameterService(self.control)

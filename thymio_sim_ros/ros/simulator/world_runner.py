@@ -13,7 +13,7 @@ import traceback
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import wait as wait_for
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from rclpy.executors import Executor
 from rclpy.node import Node
@@ -35,7 +35,7 @@ from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["WorldRunner"]
+__all__ = ["TickObserver", "WorldRunner"]
 
 T = TypeVar("T")
 
@@ -44,6 +44,19 @@ SLICE_NS = 50_000_000
 
 MAX_NOTES = 20
 """Number of notes, and of faults of other nodes, in the state; the log has all of them."""
+
+
+class TickObserver(Protocol):
+    """Follows the ticks of a live engine."""
+
+    def before_tick(self) -> None:
+        """The next tick is about to begin; a reset is possible."""
+
+    def after_tick(self) -> None:
+        """A tick has been executed."""
+
+    def engine_replaced(self) -> None:
+        """The runner has another engine."""
 
 
 class WorldRunner:
@@ -88,6 +101,8 @@ class WorldRunner:
         """Called when robots have come or gone, or for another engine (True)."""
         self.on_reset: Callable[[], None] = lambda: None
         """Called after a reset."""
+        self.observer: TickObserver | None = None
+        """Is called around each tick: a mission."""
 
     @property
     def is_replaying(self) -> bool:
@@ -112,6 +127,8 @@ class WorldRunner:
         self.prepared, self.engine = prepared, engine
         self.start()
         self.on_robots(True)
+        if self.observer is not None:
+            self.observer.engine_replaced()
         # Parts of the world before refer to each other; the collector, which does not count their megabytes, is late.
         gc.collect()
 
@@ -249,9 +266,13 @@ class WorldRunner:
             if self._logged is not None:
                 self._logged.repeat_inputs(self.engine)
                 self.update_robots()  # those of the log come and go between these ticks
+            if self.observer is not None:
+                self.observer.before_tick()
             result = self.engine.step(endpoints.demand.sensors)
             endpoints.publish_readings(self.world, result)
             self.on_tick()
+            if self.observer is not None:
+                self.observer.after_tick()
             if self.paused:
                 endpoints.clock.publish(result.now_ns, last=True)
         if not self.paused:

@@ -18,10 +18,12 @@ from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from std_srvs.srv import SetBool, Trigger
 
+from thymio_sim_ros.missions import MissionError
 from thymio_sim_ros.ros.interface import convert_readings, qos
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
+from thymio_sim_ros.ros.simulator.mission_endpoints import MissionEndpoints
 from thymio_sim_ros.ros.simulator.recording import MAX_KEPT_BYTES
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
@@ -64,6 +66,12 @@ SERVICES: Mapping[str, Service] = {
     "~/get_run_log": Service(
         Trigger, "`message` is the log of the run since its last reset, gzip in base64, for `thymio-sim replay`"
     ),
+    "~/start_mission": Service(
+        SetParameters,
+        "load the playground of a mission and judge its tries: name of a shipped mission; for another one, any name → "
+        "its file as a data URL",
+    ),
+    "~/end_mission": Service(Trigger, "judge no more; the playground stays"),
 }
 """All services of the simulator for the world as a whole."""
 
@@ -94,9 +102,14 @@ class WorldServices:
     """The world services on the node of the simulator."""
 
     def __init__(
-        self, node: Node | LocalNode, runner: WorldRunner, robots: RobotEndpointSet, messages: MessageReports
+        self,
+        node: Node | LocalNode,
+        runner: WorldRunner,
+        robots: RobotEndpointSet,
+        messages: MessageReports,
+        missions: MissionEndpoints,
     ) -> None:
-        self._runner, self._robots, self._messages = runner, robots, messages
+        self._runner, self._robots, self._messages, self._missions = runner, robots, messages, missions
         handlers: dict[str, Handler] = {
             "~/pause": self._pause,
             "~/step": self._step,
@@ -108,6 +121,8 @@ class WorldServices:
             "~/get_primitives": self._each(self._get_primitives),
             "~/get_playground": self._get_playground,
             "~/get_run_log": self._get_run_log,
+            "~/start_mission": self._each(lambda name, value: self._missions.start(name, value.string_value)),
+            "~/end_mission": self._end_mission,
         }
         self._services = [
             node.create_service(service.type, name, at_current_tick(runner, handlers[name]))
@@ -151,7 +166,7 @@ class WorldServices:
     ) -> SetParametersResult:
         try:
             answer = act(name, value)
-        except (FieldError, ValueError, InterruptedError) as error:
+        except (FieldError, MissionError, ValueError, InterruptedError) as error:
             return SetParametersResult(successful=False, reason=str(error))
         except RuntimeError:  # raised by parameter_value_to_python
             return SetParametersResult(successful=False, reason=f"{name}: found a value of unknown type {value.type}")
@@ -198,6 +213,11 @@ class WorldServices:
         response.success = log is not None
         too_large = f"the run is larger than {MAX_KEPT_BYTES / 1e6:g} MB; a reset begins a new one, or start with --log"
         response.message = too_large if log is None else base64.b64encode(log).decode("ascii")
+        return response
+
+    def _end_mission(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._missions.end()
+        response.success = True
         return response
 
     def _get_playground(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

@@ -54,6 +54,19 @@ TOPICS: Mapping[str, WorldTopic] = {
     "~/_sensors": WorldTopic(
         String, "once", "JSON: label, units and scales of the sensors' words, for viewers", qos.TRANSIENT_LOCAL
     ),
+    "~/_mission": WorldTopic(
+        String,
+        "change",
+        "JSON: the mission that is open, with its texts, zones, checklist, start programs and hints; `null`: none",
+        qos.TRANSIENT_LOCAL,
+    ),
+    "~/_mission/try": WorldTopic(
+        String,
+        "change",
+        "JSON: what the present try of the mission has reached: state, checklist, stars, reasons, time; at the end its "
+        "way",
+        qos.TRANSIENT_LOCAL,
+    ),
     "_markers": WorldTopic(MarkerArray, "change", "the playground: floors, paint, walls", qos.TRANSIENT_LOCAL, "map"),
     "_markers/objects": WorldTopic(
         MarkerArray, "≤ 20, change", "objects and doors at their current poses", qos.TRANSIENT_LOCAL, "map"

@@ -2,8 +2,8 @@
 
 The page communicates with the bridge by the Foxglove protocol: on its own port if both are in one process, otherwise on
 the port of the bridge, which is in `/config.json`. Beside that the server only serves files, read-only: those of the
-page and the shipped playgrounds as `/playgrounds/NAME.json`. It listens on loopback by default. None of the files is
-secret, therefore it needs no tokens (SECURITY.md).
+page, the shipped playgrounds as `/playgrounds/NAME.json`, the list of missions and their pictures. It listens on
+loopback by default. None of the files is secret, therefore it needs no tokens (SECURITY.md).
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import thymio_sim_ros
 from thymio_sim_ros.access.hosts import is_loopback
 from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.files import resources
+from thymio_sim_ros.missions import MissionError, documents
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.network.settings import OFF
@@ -126,7 +127,14 @@ class WebPage:
                 f"the page's port {where} cannot be used: {error.strerror}; "
                 "choose another with --port, or port:=NUMBER of ros2"
             ) from error
-        self._thread.mount_page(Content(page, json.dumps(config).encode()), settings)
+        self._thread.mount_page(Content(page, json.dumps(config).encode(), self._find_mission), settings)
+
+    def _find_mission(self, names: Sequence[str]) -> tuple[bytes, str] | None:
+        try:
+            return documents.find(names)
+        except (MissionError, OSError) as error:
+            self.node.get_logger().warning(f"missions: {error}")
+            return None
 
     @property
     def _scheme(self) -> str:

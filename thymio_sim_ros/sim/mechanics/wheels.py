@@ -59,6 +59,12 @@ class Wheels:
         return rim[left], rim[left + 1]
 
     @property
+    def wanted_m_s(self) -> tuple[float, float]:
+        """Speeds that the motors aim at."""
+        wanted, left = self._body.wheels.wanted, 2 * self._body.index
+        return wanted[left], wanted[left + 1]
+
+    @property
     def angles_rad(self) -> tuple[float, float]:
         """Angles by which they have turned."""
         angle, left = self._body.wheels.angle, 2 * self._body.index

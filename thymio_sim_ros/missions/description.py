@@ -1,0 +1,78 @@
+"""A mission and its present try as JSON values, for pages and other clients."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from thymio_sim_ros.missions.live import LiveMission
+from thymio_sim_ros.missions.mission import Mission
+from thymio_sim_ros.missions.zones import ZONES
+from thymio_sim_ros.sim.model import fields
+
+__all__ = ["described", "progress"]
+
+WAITING = "waiting"
+"""State before the first try, and after the program was stopped."""
+
+_KINDS = {kind: word for word, kind in ZONES.items()}
+
+
+def described(mission: Mission) -> dict[str, Any]:
+    """What a pupil needs of a mission: texts in all languages, zones, start programs.
+
+    Raises OSError, UnicodeDecodeError for a start program that cannot be read.
+    """
+    return {
+        "title": mission.title,
+        "story": mission.story,
+        "languages": list(mission.languages),
+        "time_s": mission.time_s,
+        "hints": list(mission.hints),
+        "facts": {name: mission.text_of(name) for name in mission.facts},
+        "stars": [{"text": star.text, "within_s": star.within_s, "length": star.length} for star in mission.stars],
+        "zones": {name: {"kind": _KINDS[type(zone)]} | fields.write(zone) for name, zone in mission.zones.items()},
+        "programs": {language: _program(Path(path)) for language, path in mission.programs.items()},
+        "translations": {
+            language: {
+                "title": texts.title,
+                "story": texts.story,
+                "hints": list(texts.hints),
+                "facts": dict(texts.facts),
+            }
+            for language, texts in mission.translations.items()
+        },
+    }
+
+
+def progress(live: LiveMission) -> dict[str, Any]:
+    """What the present try has reached.
+
+    `checklist` has the facts of each line, `done` whether it is done. `state` is waiting, running, passed or failed;
+    `reason` says why it has failed: facts (those of `broken`), time, or hand. `trouble`: see `Trouble`. Times are
+    simulated seconds; the way is in m.
+    """
+    verdict, judge = live.verdict, live.judge
+    checklist = live.checklist if verdict is None else verdict.checklist
+    shown = {
+        "tries": live.tries,
+        "trouble": live.trouble.value,
+        "checklist": [list(item.facts) for item in checklist],
+        "done": [item.is_done for item in checklist],
+    }
+    if verdict is None or judge is None:
+        return shown | {"state": WAITING, "reason": "", "at_s": 0.0, "stars": [], "broken": [], "trace": []}
+    is_failed = live.is_helped or verdict.state.value == "failed"
+    reason = "hand" if live.is_helped else "time" if verdict.is_late else "facts" if is_failed else ""
+    return shown | {
+        "state": "failed" if is_failed else verdict.state.value,
+        "reason": reason,
+        "at_s": verdict.at_s,
+        "stars": [False] * len(verdict.stars) if live.is_helped else list(verdict.stars),
+        "broken": list(verdict.broken),
+        "trace": [] if live.is_running else [[round(x, 3), round(y, 3)] for x, y in judge.trace],
+    }
+
+
+def _program(path: Path) -> dict[str, str]:
+    return {"name": path.name, "text": path.read_text(encoding="utf-8")}

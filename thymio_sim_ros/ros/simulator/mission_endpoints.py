@@ -1,0 +1,199 @@
+"""The mission that is open: starts it in the live world, judges its tries, and publishes what they reach."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import json
+import re
+import tempfile
+import urllib.parse
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from thymio_sim_ros.engine.inputs import Controlled
+from thymio_sim_ros.files.loading import load_playground
+from thymio_sim_ros.files.resources import ResourceError
+from thymio_sim_ros.missions import Mission, MissionError, load_mission
+from thymio_sim_ros.missions.description import described, progress
+from thymio_sim_ros.missions.documents import mission_after
+from thymio_sim_ros.missions.live import LiveMission
+from thymio_sim_ros.missions.shipped import find_mission
+from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
+from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks
+from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
+from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
+from thymio_sim_ros.ros.simulator.world_topics import TOPICS
+from thymio_sim_ros.sim.model.fields import FieldError
+from thymio_sim_ros.sim.playground import writer
+from thymio_sim_ros.sim.playground.reader import PlaygroundError
+
+__all__ = ["MissionEndpoints"]
+
+_UPLOAD = re.compile(r"data:[^;,]*(?:;name=(?P<name>[^;,]*))?;base64,(?P<content>.*)", re.DOTALL)
+_MISSION, _TRY = "~/_mission", "~/_mission/try"
+_FILE = "the file of a mission as data:;name=my.json;base64,..."
+
+
+@dataclass(frozen=True, slots=True)
+class _Opened:
+    """A mission, the name of its file, and what pages get of it."""
+
+    file: str
+    mission: Mission
+    content: dict[str, Any]
+
+
+class MissionEndpoints:
+    """One mission at a time, or none. Only for the thread of the simulator's executor."""
+
+    def __init__(
+        self,
+        node: Node | LocalNode,
+        runner: WorldRunner,
+        robots: RobotEndpointSet,
+        parameters: ParameterCallbacks,
+    ) -> None:
+        self._runner, self._robots, self._parameters = runner, robots, parameters
+        self._publishers = {
+            name: node.create_publisher(TOPICS[name].type, name, TOPICS[name].profile) for name in (_MISSION, _TRY)
+        }
+        self.live: LiveMission | None = None
+        self._name = ""
+        self._shown: tuple[Any, ...] = ()
+        """What the last message about the try was made of."""
+        runner.observer = self
+        self._publish_mission(None)
+        self._publish_try()
+
+    def start(self, name: str, value: str) -> None:
+        """Load a mission: the shipped one of this name, or a file that a client has sent.
+
+        The programs of all robots stop; a try begins when one runs. Raises MissionError, ValueError with a sentence;
+        the mission before then goes on.
+        """
+        if self._runner.is_replaying:
+            raise ValueError("a run is replayed: load a playground first")
+        try:
+            opened = self._runner.run_beside(lambda: _open(name, value))
+        except (ResourceError, PlaygroundError, OSError) as error:
+            raise ValueError(str(error)) from error
+        mission = opened.mission
+        if problem := self._parameters.load_playground(mission.playground):
+            raise ValueError(problem)
+        self.end()
+        try:
+            self.live = LiveMission(mission, self._runner.engine, self._runner.reset)
+        except FieldError as error:
+            raise MissionError(opened.file, error) from error
+        self._name = Path(opened.file).stem if value else name
+        self._stop_programs()
+        robot = self._robots.names[self.live.robot].name
+        following = Path(mission.next).stem if mission.next else mission_after(self._name)
+        self._publish_mission(opened.content | {"name": self._name, "robot": robot, "next": following})
+        self._publish_try()
+
+    def end(self) -> None:
+        """Judge no more."""
+        if self.live is None:
+            return
+        self.live.close()
+        self.live = None
+        self._publish_mission(None)
+        self._publish_try()
+
+    def before_tick(self) -> None:
+        """Begin a try if one is due."""
+        if self.live is not None:
+            self.live.before_tick()
+
+    def after_tick(self) -> None:
+        """Judge the tick, and publish what has changed."""
+        if self.live is not None:
+            self.live.after_tick()
+            self._publish_if_changed()
+
+    def engine_replaced(self) -> None:
+        """Judge in the new world if it is that of the mission, as with another seed; else the mission has ended."""
+        live, engine = self.live, self._runner.engine
+        if live is None:
+            return
+        if live.engine.world.playground != engine.world.playground:
+            self.end()
+            return
+        live.close()
+        self.live = LiveMission(live.mission, engine, self._runner.reset)
+        self._publish_try()
+
+    def _stop_programs(self) -> None:
+        """The programs before must not drive in this world."""
+        engine = self._runner.engine
+        for robot in engine.hosts:
+            engine.apply(Controlled(robot, "stop"))
+        self._runner.on_reset()
+
+    def _publish_if_changed(self) -> None:
+        if self.live is not None and _seen(self.live) != self._shown:
+            self._publish_try()
+
+    def _publish_try(self) -> None:
+        shown = None
+        if self.live is not None:
+            self._shown = _seen(self.live)
+            shown = progress(self.live) | {"mission": self._name}
+        self._publishers[_TRY].publish(String(data=json.dumps(shown)))
+
+    def _publish_mission(self, content: dict[str, Any] | None) -> None:
+        self._publishers[_MISSION].publish(String(data=json.dumps(content)))
+
+
+def _seen(live: LiveMission) -> tuple[Any, ...]:
+    """What a message about a try is made of, but for the time."""
+    verdict = live.verdict
+    reached = () if verdict is None else (verdict.state, verdict.checklist)
+    return (live.tries, live.trouble, live.is_helped, *reached)
+
+
+def _open(name: str, value: str) -> _Opened:
+    if not value:
+        path = find_mission(name)
+        mission = load_mission(path)
+        return _Opened(path.name, mission, described(mission))
+    with tempfile.TemporaryDirectory(prefix="mission-") as folder:
+        path = _unpacked(name, value, Path(folder))
+        try:
+            mission = load_mission(path)
+            _check_files(mission, path.parent)
+        except MissionError as error:
+            raise MissionError(path.name, FieldError(error.key, error.found, error.expected)) from error
+        except FieldError as error:
+            raise MissionError(path.name, error) from error
+        playground = mission.playground
+        if Path(playground).suffix:  # a file of this folder, which the parameter of the simulator shall not name
+            playground = writer.dumps(load_playground(playground)[1])
+        return _Opened(path.name, replace(mission, playground=playground), described(mission))
+
+
+def _check_files(mission: Mission, folder: Path) -> None:
+    """Raise FieldError if a mission of a client names a file of this computer."""
+    named = {"playground": mission.playground} | {f"programs.{one}": at for one, at in mission.programs.items()}
+    for key, file in named.items():
+        if Path(file).suffix and not Path(file).resolve().is_relative_to(folder.resolve()):
+            raise FieldError(key, f"'{file}'", "a file of the mission, or the name of a shipped playground")
+
+
+def _unpacked(name: str, value: str, folder: Path) -> Path:
+    upload = _UPLOAD.fullmatch(value)
+    if upload is None:
+        raise ValueError(f"{name}: found {value[:40]!r}, expected {_FILE}")
+    try:
+        data = base64.b64decode(upload["content"], validate=True)
+    except (binascii.Error, ValueError) as error:
+        raise ValueError(f"{name}: found characters that are not base64, expected {_FILE}") from error
+    path = folder / (Path(urllib.parse.unquote(upload["name"] or "")).name or "mission.json")
+    path.write_bytes(data)
+    return path
