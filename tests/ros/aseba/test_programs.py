@@ -256,3 +256,14 @@ def test_a_robot_that_is_added_later_gets_its_program(ros, simulation, runtime):
         assert me(ros, "bert") == [2]
         sim.engine.remove("bert")
         sim.tick()
+
+
+def test_a_tick_while_a_new_robot_gets_its_machine_does_not_stop_the_world(simulation, runtime, monkeypatch):
+    """A robot with many endpoints takes longer than a tick to add; its machine is the last of them."""
+    sim = simulation(playground="two_robots")
+    runtime()
+    runner = sim.simulator.runner
+    monkeypatch.setattr(runner, "catch_up", lambda: runner.advance(1))
+    runner.spawn(RobotStart("late", 0.0, 0.0))
+    runner.update_robots()
+    assert "late" in sim.engine.hosts

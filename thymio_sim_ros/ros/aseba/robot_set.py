@@ -158,7 +158,10 @@ class RobotSet(Sequence[DeviceEndpoints]):
             self._published_runs, ran = owner.runs, owner.ran
             for robot, event in owner.emitted:
                 events.setdefault(robot, []).append(event)
+        hosts = owner.hosts  # a tick may be executed while a new robot gets its device
         for endpoints in self._robots:
+            if endpoints.robot not in hosts:
+                continue
             if endpoints.robot in ran or endpoints.device.local_events.has_occurred:
                 emitted = events.get(endpoints.robot, ())
                 endpoints.publish(emitted)
