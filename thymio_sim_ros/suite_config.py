@@ -32,6 +32,7 @@ class SuiteConfig:
         program: name of a behavior, or path.
         behaviour: built-in behavior after switching on, from whose menu the program can be started; empty for none.
         lidar: that of each robot, None for robots without one.
+        like: profile whose names and types there are besides (`ros/profiles/`), empty for none.
         robot: address of a real robot, in place of the simulator; empty for none.
         address: address on which page and bridge listen, `ADDRESS` or an IPv4 address.
         foxglove_port: port of the bridge; `OFF`: none beside that of the page, which serves it as well.
@@ -54,6 +55,7 @@ class SuiteConfig:
     proximity_model: str = PROXIMITY_MODELS[0]
     lidar: Lidar | None = None
     out_of_range: str = OUT_OF_RANGE[0]
+    like: str = ""
     robot: str = ""
     address: str = ADDRESS
     port: int = HTTP_PORT

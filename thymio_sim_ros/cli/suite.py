@@ -36,6 +36,7 @@ from thymio_sim_ros.engine.run_log import RunLogError
 from thymio_sim_ros.files.loading import NO_PROGRAM
 from thymio_sim_ros.network.robot_target import TcpTarget, parse_target
 from thymio_sim_ros.network.settings import OFF
+from thymio_sim_ros.ros import profiles
 from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.suite_config import OUT_OF_RANGE, SuiteConfig
 
@@ -43,7 +44,7 @@ __all__ = ["run"]
 
 ROS_ARGS = "--ros-args"
 
-_OF_WORLD = ("playground", "behaviour", "seed", "motors", "proximity", "lidar")
+_OF_WORLD = ("playground", "behaviour", "like", "seed", "motors", "proximity", "lidar")
 _SIMULATOR_ONLY = (
     *_OF_WORLD,
     "log",
@@ -139,6 +140,11 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
     if options.no_foxglove_port and options.no_web:
         raise UsageError("--no-foxglove-port: found --no-web, expected the port of the page for the bridge")
     given_certificate(options)
+    profile = _profile(options.like)
+    if profile is not None:
+        if profile.playground and not _chosen(options, ("playground",)):
+            options.playground = profile.playground
+        options.program = options.program or profile.program or None
     has_none = options.robot or options.replay is not None
     return SuiteConfig(
         playground=options.playground,
@@ -149,6 +155,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         proximity_model=options.proximity,
         lidar=options.lidar,
         out_of_range=options.out_of_range,
+        like="" if profile is None else profile.name,
         robot=options.robot,
         address=options.address,
         port=options.port,
@@ -165,6 +172,18 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         tokens=given_tokens(options),
         trusted_proxies=tuple(options.trusted_proxy),
     )
+
+
+def _profile(names: Sequence[str]) -> profiles.Profile | None:
+    """The profile that was asked for. Raises UsageError for several, and for an unknown one."""
+    if not names:
+        return None
+    if len(names) > 1:
+        raise UsageError(f"--like: found {' and '.join(names)}, expected one robot: its names would meet the other's")
+    try:
+        return profiles.named(names[0])
+    except profiles.ProfileError as error:
+        raise UsageError(f"--like: {error}") from error
 
 
 def _chosen(options: argparse.Namespace, names: Sequence[str]) -> str:
@@ -191,6 +210,14 @@ def _parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     add_world_options(parser)
+    parser.add_argument(
+        "--like",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="names and types of another robot, so that its courses run here: "
+        f"{', '.join(profiles.own_names())} (docs/from-turtlesim.md)",
+    )
     parser.add_argument(
         "--robot",
         default=SuiteConfig.robot,

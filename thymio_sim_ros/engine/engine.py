@@ -26,7 +26,9 @@ from thymio_sim_ros.engine.devices import Devices, SentMessages
 from thymio_sim_ros.engine.inputs import (
     DevicesAdded,
     DeviceStart,
+    DrawingsErased,
     EventSent,
+    GroundPainted,
     Input,
     Loaded,
     MessagesReceived,
@@ -225,6 +227,10 @@ class Engine:
                 self.world.spawn(start)
             case Removed(name):
                 self.world.remove(name)
+            case DrawingsErased():
+                self.world.erase_drawings()
+            case GroundPainted(color):
+                self.world.paint_ground(color)
             case Reset():
                 self._reset()
             case DevicesAdded():
@@ -255,6 +261,14 @@ class Engine:
     def remove(self, robot: str) -> None:
         """Remove a robot at once; raises KeyError for an unknown name."""
         self.apply(Removed(robot))
+
+    def erase_drawings(self) -> None:
+        """Erase everything that pens drew."""
+        self.apply(DrawingsErased())
+
+    def paint_ground(self, color: tuple[float, float, float]) -> None:
+        """Give the first floor another color until the next reset. Raises ValueError as `World.paint_ground` does."""
+        self.apply(GroundPainted(color))
 
     def load(self, robot: str, program: ThymioProgram) -> None:
         """Load another program, which starts now. Raises KeyError for a robot without a device."""

@@ -20,7 +20,9 @@ from thymio_sim_ros.engine.inputs import (
     Controlled,
     DevicesAdded,
     DeviceStart,
+    DrawingsErased,
     EventSent,
+    GroundPainted,
     Input,
     Loaded,
     MessagesReceived,
@@ -43,7 +45,16 @@ __all__ = ["pop_devices", "read_input", "read_start", "write_devices", "write_in
 
 _PLAIN = {
     kind.__name__: kind
-    for kind in (BreakpointsSet, ClientConnected, ClientDisconnected, Controlled, EventSent, VariableSet)
+    for kind in (
+        BreakpointsSet,
+        ClientConnected,
+        ClientDisconnected,
+        Controlled,
+        DrawingsErased,
+        EventSent,
+        GroundPainted,
+        VariableSet,
+    )
 }
 """Inputs whose fields are numbers and texts."""
 

@@ -24,7 +24,9 @@ __all__ = [
     "Controlled",
     "DeviceStart",
     "DevicesAdded",
+    "DrawingsErased",
     "EventSent",
+    "GroundPainted",
     "Input",
     "Loaded",
     "MessagesReceived",
@@ -88,6 +90,18 @@ class Removed:
     """A robot was removed."""
 
     name: str
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingsErased:
+    """Everything that pens drew was erased."""
+
+
+@dataclass(frozen=True, slots=True)
+class GroundPainted:
+    """The first floor got another color: red, green, blue 0…1."""
+
+    color: tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +213,7 @@ ProgramInput = (
     | ClientDisconnected
     | MessagesReceived
 )
-Input = Posted | Spawned | Removed | Reset | ProgramInput
+Input = Posted | Spawned | Removed | DrawingsErased | GroundPainted | Reset | ProgramInput
 
 
 class Recorder(Protocol):

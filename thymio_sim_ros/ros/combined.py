@@ -20,6 +20,7 @@ from rclpy.node import Node
 from thymio_sim_ros.ros.aseba.node import AsebaRuntime
 from thymio_sim_ros.ros.combined_parameters import BRIDGE, PAGE, RUNTIME, SIMULATOR, SUITE, assigned, defaults
 from thymio_sim_ros.ros.compat import dds_profile
+from thymio_sim_ros.ros.profiles import Profile, named
 from thymio_sim_ros.ros.rclpy_ext.node_runner import (
     SPIN_SLICE_S,
     AnnouncedNode,
@@ -90,7 +91,7 @@ def _nodes(
     tokens = suite.tokens
     is_simulated = not suite.robot
     if is_simulated:
-        simulator = Simulator(context, given[SIMULATOR])
+        simulator = Simulator(context, given[SIMULATOR], profile=_profile(suite))
         _log(simulator.node, warnings)
         try:
             runtime = AsebaRuntime(context, given[RUNTIME], simulator=simulator, tokens=tokens, thread=thread)
@@ -120,6 +121,10 @@ def _nodes(
         from thymio_sim_ros.ros.web.node import WebPage
 
         yield WebPage(context, given[PAGE], tokens, thread)
+
+
+def _profile(suite: SuiteConfig) -> Profile | None:
+    return named(suite.like) if suite.like else None
 
 
 def _log(node: Node, warnings: Sequence[str]) -> None:
@@ -168,7 +173,7 @@ def _run(
 ) -> int:
     try:
         with (
-            assigned(sys.argv[1:] if args is None else args) as (words, warnings),
+            assigned(sys.argv[1:] if args is None else args, _profile(suite)) as (words, warnings),
             dds_profile.used(dds_profile.ALONE) as is_alone,
             closing(SuitePeers(words)) as peers,
         ):

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from thymio_sim_ros.ros.aseba.parameters import NetworkParams, RuntimeParams, is_free
+from thymio_sim_ros.ros.profiles import Profile, named
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.simulator.parameters import LidarParams, SimulatorParams
@@ -54,20 +55,21 @@ _QUOTED = ('"', "'", "[", "{")
 def defaults(suite: SuiteConfig) -> dict[str, Any]:
     """The parameters of each node of the suite by the name of the node, with the values of the suite."""
     device = suite.device
+    simulated = SimulatorParams(
+        playground=suite.playground,
+        seed=suite.seed,
+        motor_model=suite.motor_model,
+        proximity_model=suite.proximity_model,
+        lidar=LidarParams.of(suite.lidar),
+        out_of_range=suite.out_of_range,
+        log=suite.log,
+        replay=suite.replay,
+        replay_from=suite.replay_from_s,
+        real_time_factor=suite.real_time_factor,
+        cmd_vel_timeout=suite.cmd_vel_timeout_s,
+    )
     values: dict[str, Any] = {
-        SIMULATOR: SimulatorParams(
-            playground=suite.playground,
-            seed=suite.seed,
-            motor_model=suite.motor_model,
-            proximity_model=suite.proximity_model,
-            lidar=LidarParams.of(suite.lidar),
-            out_of_range=suite.out_of_range,
-            log=suite.log,
-            replay=suite.replay,
-            replay_from=suite.replay_from_s,
-            real_time_factor=suite.real_time_factor,
-            cmd_vel_timeout=suite.cmd_vel_timeout_s,
-        ),
+        SIMULATOR: simulated.like(named(suite.like)) if suite.like else simulated,
         RUNTIME: RuntimeParams(
             path=suite.program,
             behaviour=suite.behaviour,
@@ -93,8 +95,10 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
     return values
 
 
-def targets(name: str) -> tuple[Target, ...]:
-    """The targets of a parameter of the suite; empty if no node has it."""
+def targets(name: str, profile: Profile | None = None) -> tuple[Target, ...]:
+    """The targets of a parameter of the suite, with the node of a profile if there is one; empty if no node has it."""
+    if profile is not None and any(row.name == name for row in profile.node_parameters):
+        return ((profile.node, name),)
     if name in _SPECIAL:
         return _SPECIAL[name]
     if name in _ROS_PARAMETERS:
@@ -107,7 +111,7 @@ def targets(name: str) -> tuple[Target, ...]:
 
 
 @contextmanager
-def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
+def assigned(words: Sequence[str], profile: Profile | None = None) -> Iterator[tuple[list[str], list[str]]]:
     """Yield the ROS arguments with each parameter assigned to its nodes, and warnings about unknown parameters.
 
     The arguments name a temporary file, which exists until the context ends. Raises StartError if it cannot be written.
@@ -116,7 +120,7 @@ def assigned(words: Sequence[str]) -> Iterator[tuple[list[str], list[str]]]:
     if not given:
         yield list(words), []
         return
-    sections, warnings = _sections(given)
+    sections, warnings = _sections(given, profile)
     with ExitStack() as stack:
         try:
             # Not a NamedTemporaryFile: on Windows a file that is open cannot be opened once more.
@@ -151,16 +155,17 @@ def _split(words: Sequence[str]) -> tuple[list[str], list[str], list[str]]:
     return rest[:place], given, rest[place:]
 
 
-def _sections(given: Sequence[str]) -> tuple[dict[str, dict[str, str]], list[str]]:
+def _sections(given: Sequence[str], profile: Profile | None) -> tuple[dict[str, dict[str, str]], list[str]]:
     """Return node → parameter → value as it was written, and warnings.
 
     Parameters that name a node are applied last, and so override those without.
     """
-    sections: dict[str, dict[str, str]] = {node: {} for node in (SIMULATOR, RUNTIME, BRIDGE, PAGE)}
+    of_profile = (profile.node,) if profile is not None and profile.node else ()
+    sections: dict[str, dict[str, str]] = {node: {} for node in (SIMULATOR, RUNTIME, BRIDGE, PAGE, *of_profile)}
     warnings: list[str] = []
     rules = [(*left.rpartition(":")[::2], value) for left, _, value in (rule.partition(":=") for rule in given)]
     for node, name, value in sorted(rules, key=lambda rule: rule[0] not in ("", SUITE)):
-        found = targets(name) if node in ("", SUITE) else ((node, name),)
+        found = targets(name, profile) if node in ("", SUITE) else ((node, name),)
         if not found:
             known = [key for values in defaults(SuiteConfig()).values() for key in parameters.by_name(values)]
             warnings.append(

@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from thymio_sim_ros.sim.actuators import all_actuators
+from thymio_sim_ros.sim.actuators.pen import PenState
 from thymio_sim_ros.sim.batch.robot_batch import RobotBatch
 from thymio_sim_ros.sim.commands import MOTOR_MODELS, Command, Lift, MoveObject, MoveRobot, SetMotorModel, SetPen
 from thymio_sim_ros.sim.ground.floor_support import FloorSupport, nearest_floor
@@ -21,6 +22,7 @@ from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.lidar import LIDAR, Lidar
+from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
 from thymio_sim_ros.sim.physics import Contact, MovableBody, Physics
@@ -69,7 +71,7 @@ class StepResult(NamedTuple):
 
 
 class World:
-    """A running playground. Invariant: only `step`, `reset`, `spawn` and `remove` change it."""
+    """A running playground. Invariant: it changes only by methods that say so: they are the inputs of an engine."""
 
     def __init__(
         self,
@@ -123,6 +125,9 @@ class World:
     def _begin(self) -> None:
         self._clock = SimClock()
         self._ground.restore()
+        self._ground.paint(None)
+        self.painted: Color | None = None
+        """The color that the first floor has got, None if it has its own."""
         self._physics = Physics(self.playground.solids, self.playground.triggers, len(self.playground.robots))
         self._movables = self._physics.movables
         self._robots: dict[str, Robot] = {}
@@ -232,6 +237,24 @@ class World:
         self._posted = [(name, command) for name, command in self._posted if name != robot]
         self._batch = RobotBatch(self._robots.values(), self._shared, rows)
 
+    def erase_drawings(self) -> None:
+        """Erase everything that pens drew, at once."""
+        self._ground.restore()
+        for robot in self._robots.values():
+            robot.states[PenState].forget()
+
+    def paint_ground(self, color: Color) -> None:
+        """Give the first floor of the playground another color, 0…1 each, at once, until the next reset.
+
+        Raises ValueError for a color out of range, or without a floor.
+        """
+        if not self.playground.floors:
+            raise ValueError("found no ground that could be painted")
+        if not all(0.0 <= part <= 1.0 for part in color):
+            raise ValueError(f"found the color {color}, expected three numbers from 0 to 1")
+        self._ground.paint(color)
+        self.painted = color
+
     def step(self, sensors: Collection[str] | None = None) -> StepResult:
         """Advance the world by one tick.
 
@@ -250,6 +273,10 @@ class World:
     def read(self, robot: str, sensor: str) -> Reading | None:
         """The present reading of a stateless sensor. Raises KeyError for an unknown robot or sensor."""
         return self._batch.read(self._robots[robot], sensor)
+
+    def color_at(self, x_m: float, y_m: float) -> Color | None:
+        """The color of the ground at a point, drawings included; None where there is none."""
+        return self._ground.color_at(x_m, y_m)
 
     def _select(self, wanted: Collection[str] | None) -> None:
         self._wanted = wanted

@@ -14,7 +14,7 @@ from std_msgs.msg import ColorRGBA, Empty
 
 from thymio_sim_ros.ros import generate_ros_docs
 from thymio_sim_ros.ros.interface.command_checks import CommandError
-from thymio_sim_ros.ros.interface.driver_topics import STANDARD_TOPICS, TOPICS, DriverTopics
+from thymio_sim_ros.ros.interface.driver_topics import STANDARD_TOPICS, TOPICS, of
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext
 from thymio_sim_ros.sim.commands import (
     LED_GROUPS,
@@ -54,7 +54,7 @@ def types():
 
 
 TYPES = types()
-DRIVER = DriverTopics.of(TYPES)
+DRIVER = of(TYPES)
 INPUTS = {one.topic: one for one in DRIVER.inputs}
 
 

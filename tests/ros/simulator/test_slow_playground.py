@@ -45,7 +45,7 @@ def slow(simulation, monkeypatch):
             sim.gone_on.set()
 
     monkeypatch.setattr(prepared_playground, "load_playground", load_late)
-    sim.simulator.runner.on_tick = look
+    sim.simulator.runner.on_tick.append(look)
     sim.simulator.runner.pause(False)
     yield sim
     sim.gone_on.set()

@@ -201,7 +201,8 @@ class AsebaRuntime:
                 self.node.get_logger().error(f"robots {', '.join(runner.world.robots)}: {error}")
 
         robots.follow(simulator.endpoints.robots.names, is_new=True)
-        runner.on_robots, runner.on_tick, runner.on_reset = follow, robots.publish, robots.refresh
+        runner.on_robots, runner.on_reset = follow, robots.refresh
+        runner.on_tick.append(robots.publish)
 
     def _is_set_again(self, parameter: str) -> bool:
         """Whether a parameter acts even if its value is the same.

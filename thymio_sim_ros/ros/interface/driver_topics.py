@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any, Protocol, TypeVar
 
 from builtin_interfaces.msg import Duration
@@ -18,6 +18,7 @@ from rclpy.qos import QoSProfile
 
 from thymio_sim_ros.ros.interface import command_checks, qos, saturation, sensor_topics
 from thymio_sim_ros.ros.interface.command_checks import CommandError
+from thymio_sim_ros.ros.interface.extra_topics import ExtraTopics
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import HIDDEN
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext, RobotInput, robot_inputs
@@ -28,7 +29,7 @@ from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.sensors import all_sensors
 
-__all__ = ["PACKAGE", "STANDARD_TOPICS", "TOPICS", "DriverTopics", "driver_name", "found"]
+__all__ = ["PACKAGE", "STANDARD_TOPICS", "TOPICS", "driver_name", "found", "of", "plain"]
 
 PACKAGE = "thymio_msgs"
 
@@ -101,48 +102,32 @@ class _SystemSound(Protocol):
     STOP: int
 
 
-@dataclass(frozen=True, slots=True)
-class DriverTopics:
-    """Additional topics of a robot: published rows by sensor, and inputs."""
+def plain() -> ExtraTopics:
+    """Return the topics with standard types, under the driver's names."""
+    rows = {sensor.name: _plain(sensor_topics.rows_of(sensor)) for sensor in all_sensors()}
+    return ExtraTopics({sensor: named for sensor, named in rows.items() if named}, _plain(robot_inputs()))
 
-    rows: Mapping[str, Sequence[Row]] = field(default_factory=dict)
-    inputs: Sequence[RobotInput] = ()
 
-    @classmethod
-    def plain(cls) -> DriverTopics:
-        """Return the topics with standard types, under the driver's names."""
-        rows = {sensor.name: _plain(sensor_topics.rows_of(sensor)) for sensor in all_sensors()}
-        return cls({sensor: plain for sensor, plain in rows.items() if plain}, _plain(robot_inputs()))
+def of(messages: Any) -> ExtraTopics:
+    """Return the topics with types of the module `thymio_msgs.msg`."""
 
-    def with_all(self, other: DriverTopics) -> DriverTopics:
-        """Return the topics of both."""
-        sensors = self.rows.keys() | other.rows.keys()
-        rows = {name: (*self.rows.get(name, ()), *other.rows.get(name, ())) for name in sorted(sensors)}
-        return DriverTopics(rows, (*self.inputs, *other.inputs))
+    def comm(reading: Reading, _names: object, _options: object) -> Any:
+        words = reading.words
+        return messages.Comm(value=words[0], payloads=words[1:8], intensities=words[8:15])
 
-    @classmethod
-    def of(cls, messages: Any) -> DriverTopics:
-        """Return the topics with types of the module `thymio_msgs.msg`."""
+    def taken(topic: str, act: Any, profile: QoSProfile, limit_check: LimitCheck = saturation.nothing) -> RobotInput:
+        _, kind, about = TOPICS[topic]
+        return RobotInput(topic, getattr(messages, kind), act, about, profile, limit_check)
 
-        def comm(reading: Reading, _names: object, _options: object) -> Any:
-            words = reading.words
-            return messages.Comm(value=words[0], payloads=words[1:8], intensities=words[8:15])
-
-        def taken(
-            topic: str, act: Any, profile: QoSProfile, limit_check: LimitCheck = saturation.nothing
-        ) -> RobotInput:
-            _, kind, about = TOPICS[topic]
-            return RobotInput(topic, getattr(messages, kind), act, about, profile, limit_check)
-
-        return cls(
-            {"comm": (Row("comm/rx", messages.Comm, comm, TOPICS["comm/rx"][2]),)},
-            (
-                taken("led", _led, qos.LEDS, _too_bright),
-                taken("led/gesture", _gesture, qos.LEDS),
-                taken("sound/play", _tone, qos.EVENTS, lambda message: saturation.frequency(message.frequency)),
-                taken("sound/play/system", _system, qos.EVENTS, lambda message: saturation.sound_number(message.sound)),
-            ),
-        )
+    return ExtraTopics(
+        {"comm": (Row("comm/rx", messages.Comm, comm, TOPICS["comm/rx"][2]),)},
+        (
+            taken("led", _led, qos.LEDS, _too_bright),
+            taken("led/gesture", _gesture, qos.LEDS),
+            taken("sound/play", _tone, qos.EVENTS, lambda message: saturation.frequency(message.frequency)),
+            taken("sound/play/system", _system, qos.EVENTS, lambda message: saturation.sound_number(message.sound)),
+        ),
+    )
 
 
 def driver_name(topic: str) -> str:
@@ -151,15 +136,15 @@ def driver_name(topic: str) -> str:
     return plain if plain in STANDARD_TOPICS else topic
 
 
-def found(node: Node) -> DriverTopics:
+def found(node: Node) -> ExtraTopics:
     """Return all topics that are available; a package that is installed but cannot be imported is logged."""
     try:
         import thymio_msgs.msg
     except ImportError as error:
         if not isinstance(error, ModuleNotFoundError) or error.name != PACKAGE:
             node.get_logger().warning(f"{PACKAGE} is left out: {error}")
-        return DriverTopics.plain()
-    return DriverTopics.plain().with_all(DriverTopics.of(thymio_msgs.msg))
+        return plain()
+    return plain().with_all(of(thymio_msgs.msg))
 
 
 _R = TypeVar("_R", Row, RobotInput)

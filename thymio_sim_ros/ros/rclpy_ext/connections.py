@@ -55,6 +55,8 @@ MAX_NAMES = 3
 _OURS = ("simulator", "aseba_runtime", "foxglove_bridge", SUBSCRIBING_PEER)
 """Nodes of this package with many endpoints, whose names come from the graph or fit: they are skipped, since queries
 cost time."""
+_GOAL_SERVICE = "/_action/send_goal"
+"""End of the name of the service that gets the goals of an action."""
 _OF_EVERY_NODE = frozenset({
     "rosout", "parameter_events", "describe_parameters", "get_parameter_types", "get_parameters", "list_parameters",
     "set_parameters", "set_parameters_atomically", "get_type_description",
@@ -171,10 +173,25 @@ class _OwnNames:
 class Connections:
     """Finds endpoints that are not connected to the topics and services of a node, and warns once about each."""
 
-    def __init__(self, node: Node, switched_off: Mapping[str, str] | None = None) -> None:
-        """`switched_off`: parameters by the topics that they would switch on, relative to a robot or the node."""
-        self._node = node
-        self._switched_off = switched_off or {}
+    def __init__(
+        self,
+        node: Node,
+        switched_off: Mapping[str, str] | None = None,
+        *,
+        beside: Sequence[Node] = (),
+        missing: Mapping[str, str] | None = None,
+    ) -> None:
+        """Watch the endpoints of a node.
+
+        Args:
+            node: The node.
+            switched_off: Parameters by the topics that they would switch on, relative to a robot or the node.
+            beside: Other nodes whose endpoints count as those of the node.
+            missing: Sentences by names of topics, services and actions that do not exist on purpose: relative to a
+                robot, or full with a slash at the start.
+        """
+        self._node, self._own_nodes = node, (node, *beside)
+        self._switched_off, self._missing = switched_off or {}, missing or {}
         self._own: dict[Side, _OwnNames] = {}
         self._misfits: dict[_Endpoint, Unconnected | None] = {}
         """Endpoints with name and type of ours, with the fault of their QoS."""
@@ -241,9 +258,9 @@ class Connections:
         return tuple(dict.fromkeys(endpoint for endpoint in found if endpoint is not None))
 
     def _others(self) -> Iterator[_Endpoint]:
-        own = (self._node.get_name(), self._node.get_namespace())
+        own = {(node.get_name(), node.get_namespace()) for node in self._own_nodes}
         for name, namespace in dict.fromkeys(self._node.get_node_names_and_namespaces()):
-            if (name, namespace) == own or (namespace == own[1] and name in _OURS):
+            if (name, namespace) in own or (namespace == self._node.get_namespace() and name in _OURS):
                 continue
             for query in _QUERIES:
                 try:
@@ -254,7 +271,7 @@ class Connections:
 
     def _own_names(self, query: _Query) -> _OwnNames:
         """Return the names of our node that connect to a side."""
-        endpoints = list(getattr(self._node, query.own_peers))
+        endpoints = [endpoint for node in self._own_nodes for endpoint in getattr(node, query.own_peers)]
         known = self._own.get(query.side)
         if known is None or known.endpoints != endpoints:
             self._own[query.side] = known = _OwnNames(endpoints)
@@ -263,7 +280,16 @@ class Connections:
     def _may_be_wrong(self, endpoint: _Endpoint) -> bool:
         """Whether a name that is not ours could mean one of ours."""
         return bool(
-            self._parameter_of(endpoint) or self._own_names(endpoint.query).meant(endpoint.topic, endpoint.type)
+            self._parameter_of(endpoint)
+            or self._reason_of(endpoint)
+            or self._own_names(endpoint.query).meant(endpoint.topic, endpoint.type)
+        )
+
+    def _reason_of(self, endpoint: _Endpoint) -> str:
+        """Return why there is no peer for a name on purpose; empty if that is not the reason."""
+        name = endpoint.topic.removesuffix(_GOAL_SERVICE)
+        return next(
+            (why for of, why in self._missing.items() if name == of or (of[0] != "/" and name.endswith(f"/{of}"))), ""
         )
 
     def _parameter_of(self, endpoint: _Endpoint) -> str:
@@ -275,6 +301,8 @@ class Connections:
     def _wrong_name(self, endpoint: _Endpoint) -> Unconnected:
         side, names = endpoint.query.side, self._own_names(endpoint.query)
         meant = names.meant(endpoint.topic, endpoint.type)
+        if reason := self._reason_of(endpoint):
+            return Unconnected(endpoint.topic, endpoint.full_node, side, endpoint.type, f"no {side.name}", reason)
         if parameter := self._parameter_of(endpoint):
             cure = f"It is switched off: start the simulator with {_argument(f'{parameter}:=true')}"
             return Unconnected(endpoint.topic, endpoint.full_node, side, endpoint.type, f"a {side.peer}", cure)
@@ -306,10 +334,10 @@ class Connections:
         subscribed = self._node.get_subscriptions_info_by_topic(endpoint.topic)
         is_publisher = endpoint.query.side is PUBLISHER
         theirs, ours = (published, subscribed) if is_publisher else (subscribed, published)
-        own = self._node.get_fully_qualified_name()
+        own = {node.get_fully_qualified_name() for node in self._own_nodes}
         for info in theirs:
             for peer in ours:
-                if (_node_of(info), _node_of(peer)) != (endpoint.full_node, own):
+                if _node_of(info) != endpoint.full_node or _node_of(peer) not in own:
                     continue
                 found, expected = info.qos_profile, peer.qos_profile
                 if wrong := wrong_qos(

@@ -23,9 +23,10 @@ from thymio_sim_ros.engine.run_log import RunLogError
 from thymio_sim_ros.names.domain import describe_domain
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.interface import driver_topics, qos
-from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
+from thymio_sim_ros.ros.interface.extra_topics import ExtraTopics
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
+from thymio_sim_ros.ros.profiles import Profile
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
@@ -38,6 +39,7 @@ from thymio_sim_ros.ros.simulator.mission_endpoints import MissionEndpoints
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks, reject_sim_time
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams, LidarParams, SimulatorParams
 from thymio_sim_ros.ros.simulator.prepared_playground import LOAD_ERRORS, PreparedPlayground, new_engine
+from thymio_sim_ros.ros.simulator.profile.host import ProfileHost
 from thymio_sim_ros.ros.simulator.recording import Recording
 from thymio_sim_ros.ros.simulator.robot_access import RobotAccess
 from thymio_sim_ros.ros.simulator.robot_endpoints import RobotEndpoints
@@ -63,11 +65,13 @@ class Simulator:
         *,
         is_closed: bool = False,
         is_localized: bool = True,
+        profile: Profile | None = None,
     ) -> None:
-        """`is_closed`: only this process reaches services, parameters and topics of the world, by `control`.
+        """`profile`: the robot whose names and types there are besides.
+        `is_closed`: only this process reaches services, parameters and topics of the world, by `control`.
         `is_localized`: whether transforms have the true pose on the map, or that of the odometry.
 
-        Raises StartError for a playground, a parameter or a log file that cannot be used.
+        Raises StartError for a playground, a parameter, a profile or a log file that cannot be used.
         """
         self.node = parameter_node(
             "simulator",
@@ -97,18 +101,23 @@ class Simulator:
         except (*LOAD_ERRORS, RunLogError) as error:
             self.node.destroy_node()
             raise StartError(str(error)) from error
+        self._profile = self._host(context, profile)
         self._last_heartbeat_ns = 0
         self.attached: Sequence[AnnouncedNode] = ()
         """Nodes that the thread of this one runs as well, since they use the engine."""
         self._messages = MessageReports(self.node)
         self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot, is_localized=is_localized)
-        extra = driver_topics.found(self.node) if values.driver_topics else DriverTopics()
-        self._robot_options = replace(values.endpoint_options, extra=extra)
+        extra = driver_topics.found(self.node) if values.driver_topics else ExtraTopics()
+        own = values.endpoint_options
+        replaced = frozenset() if self._profile is None else self._profile.profile.replaces
+        self._robot_options = replace(own, extra=extra, left_out=own.left_out | replaced)
         if logged is None:
             engine = new_engine(prepared.playground, values, prepared.ground)
         else:
             engine = logged.new_engine(prepared.ground)
-        self._connections = Connections(self.node, values.switched_off)
+        beside = () if self._profile is None else self._profile.nodes
+        missing = {} if self._profile is None else self._profile.missing
+        self._connections = Connections(self.node, values.switched_off, beside=beside, missing=missing)
         self.runner = WorldRunner(
             self.node,
             self.params,
@@ -120,6 +129,8 @@ class Simulator:
             engine,
             logged,
         )
+        if self._profile is not None:
+            self._profile.attach(self.runner, self._messages)
         self.runner.start()
         if logged is not None:
             self.runner.step(logged.tick_at(values.replay_from))
@@ -140,12 +151,14 @@ class Simulator:
         names = self.endpoints.robots.names.values()
         robots = ", ".join(full_name(self.node, one.name).rstrip("/") or "/" for one in names)
         where = describe_domain(os.environ, self.node.context.get_domain_id())
-        return f"Playground {self.runner.prepared.name}, robots in {robots or 'none'}; {where}"
+        like = "" if self._profile is None else f"like {self._profile.profile.name}, "
+        return f"Playground {self.runner.prepared.name}, {like}robots in {robots or 'none'}; {where}"
 
     @property
     def peers(self) -> Sequence[Node]:
         """The ROS nodes that the executor of this one spins as well."""
-        return [attached.node for attached in self.attached]
+        beside = () if self._profile is None else self._profile.nodes
+        return [*beside, *(attached.node for attached in self.attached)]
 
     def run_once(self, executor: Executor) -> None:
         """Execute the ticks that are due, then handle messages until the next tick with a visible result."""
@@ -174,6 +187,8 @@ class Simulator:
             attached.close()
         if self._interfaces is not None:
             self._interfaces.close()
+        if self._profile is not None:
+            self._profile.close()
         self.node.destroy_node()
 
     def _repeat(self, parameter: str) -> str:
@@ -187,7 +202,18 @@ class Simulator:
     def _new_robot(self, robot: str, names: RobotNames) -> RobotEndpoints:
         owner = RobotAccess(robot, names, self.runner, self.params, self._messages)
         options, demand = self._robot_options, self.endpoints.demand
-        return RobotEndpoints(self.node, names, owner, options=options, demand=demand, control=self.control)
+        other = None if self._profile is None else self._profile.open(robot, names)
+        return RobotEndpoints(
+            self.node, names, owner, options=options, demand=demand, control=self.control, other=other
+        )
+
+    def _host(self, context: Context, profile: Profile | None) -> ProfileHost | None:
+        """Create the endpoints of a profile. Raises StartError."""
+        try:
+            return None if profile is None else ProfileHost(context, self.node, profile)
+        except StartError:
+            self.node.destroy_node()
+            raise
 
     def _publish_heartbeat(self, now_ns: int) -> None:
         self._last_heartbeat_ns = now_ns

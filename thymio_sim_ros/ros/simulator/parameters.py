@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from thymio_sim_ros.ros.interface.convert_readings import (
     PROXIMITY_FOV_RAD,
@@ -15,6 +16,7 @@ from thymio_sim_ros.ros.interface.convert_readings import (
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import FrameNames, Naming
 from thymio_sim_ros.ros.interface.sensor_topics import JOINTS, SCAN, TRUTH
+from thymio_sim_ros.ros.profiles import Profile
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameters import group, param
 from thymio_sim_ros.ros.simulator.robot_endpoints import DESCRIPTION, EndpointOptions
@@ -251,6 +253,11 @@ class SimulatorParams:
         """Sensor periods that differ from those that the sensors declare."""
         lidar = self.lidar.lidar
         return {**(self.periods_ns or {}), **({} if lidar is None else {LIDAR: lidar.period_ns})}
+
+    def like(self, profile: Profile) -> SimulatorParams:
+        """Return the parameters with those that a profile needs."""
+        names: Mapping[str, Any] = {"robot_names": list(profile.robots)} if profile.robots else {}
+        return replace(self, **names, **profile.parameters)
 
     def renamed(self, playground: Playground) -> Playground:
         """Return the playground with robots renamed as in `robot_names`. Raises StartError for an invalid name."""

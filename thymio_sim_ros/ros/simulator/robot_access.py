@@ -12,7 +12,7 @@ from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.visualization.transforms import frames_of
 from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
-from thymio_sim_ros.sim.commands import Command, MoveRobot
+from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.geometry import Pose
 
 __all__ = ["RobotAccess"]
@@ -44,13 +44,8 @@ class RobotAccess:
     def post(self, command: Command) -> None:
         """Execute deferred ticks and post a command to the world; dropped if the robot has been removed."""
         self._runner.catch_up()
-        world = self._runner.world
-        if self._robot not in world.robots:
-            return
-        if isinstance(command, MoveRobot):
-            self._runner.move(self._robot, command.x_m, command.y_m, command.yaw_rad)
-        else:
-            self._runner.engine.post(self._robot, command)
+        if self._robot in self._runner.world.robots:
+            self._runner.post(self._robot, command)
 
     def _frames(self) -> Mapping[str, Pose]:
         robot = self._runner.world.robots.get(self._robot)

@@ -19,10 +19,10 @@ from std_srvs.srv import Trigger
 from thymio_sim_ros.ros.interface import qos, sensor_topics
 from thymio_sim_ros.ros.interface.command_checks import CommandError, NotFiniteError, tiny_field
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
-from thymio_sim_ros.ros.interface.driver_topics import DriverTopics
+from thymio_sim_ros.ros.interface.extra_topics import ExtraTopics
 from thymio_sim_ros.ros.interface.names import HIDDEN, RobotNames, full_name
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext, RobotInput, robot_inputs
-from thymio_sim_ros.ros.interface.sensor_topics import Row
+from thymio_sim_ros.ros.interface.sensor_topics import Row, is_periodic
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode, LocalTopic
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
@@ -33,7 +33,7 @@ from thymio_sim_ros.sim.commands import Command
 from thymio_sim_ros.sim.model.geometry import Pose, Tilt, Twist
 from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 from thymio_sim_ros.sim.playground.placement import PlacementError
-from thymio_sim_ros.sim.sensors import all_sensors
+from thymio_sim_ros.sim.sensors import Sensor, all_sensors
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message, Service
@@ -43,6 +43,7 @@ __all__ = [
     "DESCRIPTION_TOPIC",
     "SERVICES",
     "EndpointOptions",
+    "OtherEndpoints",
     "RobotEndpoints",
     "RobotOwner",
     "first_words",
@@ -89,13 +90,14 @@ class EndpointOptions:
     stamped_cmd_vel: bool = False
     left_out: frozenset[str] = frozenset()
     every_ns: Mapping[str, int] = field(default_factory=dict)
-    extra: DriverTopics = field(default_factory=DriverTopics)
+    extra: ExtraTopics = field(default_factory=ExtraTopics)
 
 
 @dataclass(slots=True)
 class _SensorPublisher:
-    """The publisher of a row with its demand, the time of the next message, and the last published value."""
+    """The publisher of a row with its node and demand, the time of the next message, and the last published value."""
 
+    node: Node | LocalNode
     row: Row
     topic_demand: TopicDemand
     next_ns: int
@@ -125,6 +127,20 @@ class RobotOwner(Protocol):
         """Post a command to the robot. Raises PlacementError for a place that is not free."""
 
 
+class OtherEndpoints(Protocol):
+    """What a robot has besides its own endpoints."""
+
+    node: Node
+    """The node that has them."""
+    topics: ExtraTopics
+
+    def reset(self) -> None:
+        """Follow a reset of the world, or another world."""
+
+    def close(self) -> None:
+        """Destroy what is not a topic."""
+
+
 class RobotEndpoints:
     """Publishers, subscriptions and services of one robot on the simulator's node."""
 
@@ -137,6 +153,7 @@ class RobotEndpoints:
         options: EndpointOptions,
         demand: SubscriberDemand,
         control: Node | LocalNode | None = None,
+        other: OtherEndpoints | None = None,
     ) -> None:
         """Create all endpoints.
 
@@ -147,11 +164,13 @@ class RobotEndpoints:
             options: Which topics to create.
             demand: Counts the topics that are published.
             control: Has the topics of operators and the true pose, if not the node.
+            other: What the robot has besides.
         """
         self.names = names
         self._node = node
         self._control = node if control is None else control
         self._owner = owner
+        self._other = other
         self._reported: set[tuple[str, str]] = set()
         """Topics and first words of what is reported once."""
         self._is_cause_named = False
@@ -162,8 +181,10 @@ class RobotEndpoints:
         for sensor in all_sensors():
             for row in (*sensor_topics.rows_of(sensor), *options.extra.rows.get(sensor.name, ())):
                 if row.topic not in options.left_out:
-                    every_ns = options.every_ns.get(row.topic, row.every_ns)
-                    self._open(row, TopicDemand(sensor.name, every_ns, sensor_topics.is_periodic(sensor, row)))
+                    self._open(self._node_of(row), row, sensor, options.every_ns.get(row.topic, row.every_ns))
+            if other is not None:
+                for row in other.topics.rows.get(sensor.name, ()):
+                    self._open(other.node, row, sensor, row.every_ns)
         self._description: Publisher[String] | None = None
         if DESCRIPTION not in options.left_out:
             self._description = node.create_publisher(
@@ -171,15 +192,21 @@ class RobotEndpoints:
             )
             self._description.publish(String(data=urdf(names, has_lidar=sensor_topics.SCAN not in options.left_out)))
         known = (*robot_inputs(stamped_cmd_vel=options.stamped_cmd_vel), *options.extra.inputs)
-        inputs = [robot_input for robot_input in known if robot_input.topic not in options.left_out]
+        inputs: list[tuple[Any, RobotInput]] = [
+            (self._control if robot_input.is_of_operator else node, robot_input)
+            for robot_input in known
+            if robot_input.topic not in options.left_out
+        ]
+        if other is not None:
+            inputs += [(other.node, robot_input) for robot_input in other.topics.inputs]
         self._subscriptions: list[tuple[Any, Any]] = [
             (
-                chosen := self._control if robot_input.is_of_operator else node,
+                chosen,
                 chosen.create_subscription(
                     robot_input.type, names.topic(robot_input.topic), self._handler(robot_input), robot_input.profile
                 ),
             )
-            for robot_input in inputs
+            for chosen, robot_input in inputs
         ]
         handlers = {"is_ready": lambda _request, response: response, "reset_odometry": self._reset_odometry}
         self._services = [
@@ -241,6 +268,8 @@ class RobotEndpoints:
 
     def reset(self) -> None:
         """Publish the next reading of every sensor even if unchanged, and replace outdated retained messages."""
+        if self._other is not None:
+            self._other.reset()
         for sensor, publishers in self._publishers.items():
             for target in publishers:
                 target.last, target.next_ns = None, target.topic_demand.every_ns
@@ -250,6 +279,8 @@ class RobotEndpoints:
 
     def close(self) -> None:
         """Destroy all topics and services of this robot."""
+        if self._other is not None:
+            self._other.close()
         for service in self._services:
             self._node.destroy_service(service)
         for chosen, subscription in self._subscriptions:
@@ -257,16 +288,17 @@ class RobotEndpoints:
         for publishers in self._publishers.values():
             for target in publishers:
                 self._send(target, wanted=False)
-                creator: Any = self._node_of(target.row)
+                creator: Any = target.node
                 creator.destroy_publisher(target.publisher)
         if self._description is not None:
             self._node.destroy_publisher(self._description)
 
-    def _open(self, row: Row, topic_demand: TopicDemand) -> None:
-        topic = self.names.topic(row.topic)
-        profile, overrides = qos.overridable(self._node, topic, row.profile)
-        publisher = self._node_of(row).create_publisher(row.type, topic, profile, qos_overriding_options=overrides)
-        target = _SensorPublisher(row, topic_demand, topic_demand.every_ns, publisher, counter(publisher))
+    def _open(self, node: Node | LocalNode, row: Row, sensor: Sensor, every_ns: int) -> None:
+        topic, topic_demand = self.names.topic(row.topic), TopicDemand(sensor.name, every_ns, is_periodic(sensor, row))
+        started = self._node if isinstance(node, LocalNode) else node
+        profile, overrides = qos.overridable(started, topic, row.profile)
+        publisher = node.create_publisher(row.type, topic, profile, qos_overriding_options=overrides)
+        target = _SensorPublisher(node, row, topic_demand, every_ns, publisher, counter(publisher))
         self._publishers[topic_demand.sensor].append(target)
         self._send(target, wanted=row.always)
 

@@ -13,6 +13,7 @@ import traceback
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import wait as wait_for
+from dataclasses import replace
 from typing import Protocol, TypeVar
 
 from rclpy.executors import Executor
@@ -29,9 +30,10 @@ from thymio_sim_ros.ros.simulator.parameters import CurrentParams
 from thymio_sim_ros.ros.simulator.prepared_playground import PreparedPlayground
 from thymio_sim_ros.ros.simulator.recording import Recording
 from thymio_sim_ros.ros.simulator.tick_scheduler import TickScheduler
-from thymio_sim_ros.ros.simulator.world_endpoints import WorldState
-from thymio_sim_ros.sim.commands import MoveObject, MoveRobot
+from thymio_sim_ros.ros.simulator.world_endpoints import SceneMessages, WorldState
+from thymio_sim_ros.sim.commands import Command, MoveObject, MoveRobot
 from thymio_sim_ros.sim.model.clock import TICK_NS
+from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
@@ -95,8 +97,11 @@ class WorldRunner:
         self.is_ending = False
         """Whether the node is about to stop: `run_beside` waits no longer."""
         self._published_fallen: frozenset[str] = frozenset()
-        self.on_tick: Callable[[], None] = lambda: None
+        self._shown_paint: Color | None = None
+        self.on_tick: list[Callable[[], None]] = []
         """Called after each tick, when its readings are published."""
+        self.on_start: list[Callable[[], None]] = []
+        """Called when another world starts, or this one anew."""
         self.on_robots: Callable[[bool], None] = lambda is_new: None
         """Called when robots have come or gone, or for another engine (True)."""
         self.on_reset: Callable[[], None] = lambda: None
@@ -214,6 +219,13 @@ class WorldRunner:
         self.world.check_ground(start.name, start.x_m, start.y_m)
         self.engine.spawn(start)
 
+    def post(self, robot: str, command: Command) -> None:
+        """Post a command to a robot; one that moves it, only to a position on a ground. Raises as `move` does."""
+        if isinstance(command, MoveRobot):
+            self.move(robot, command.x_m, command.y_m, command.yaw_rad)
+        else:
+            self.engine.post(robot, command)
+
     def move(self, name: str, x_m: float, y_m: float, yaw_rad: float) -> None:
         """Move a robot or object to a position on a ground; a lifted robot to any position.
 
@@ -225,6 +237,11 @@ class WorldRunner:
             self.world.check_ground(name, x_m, y_m)
         command = MoveObject if robot is None else MoveRobot
         self.engine.post(name, command(x_m, y_m, yaw_rad))
+
+    def paint_ground(self, color: Color) -> None:
+        """Give the first floor another color until the next reset, and show it. Raises ValueError without a floor."""
+        self.engine.paint_ground(color)
+        self._show_paint()
 
     def update_robots(self) -> None:
         """Create or destroy topics and frames if robots were added or removed."""
@@ -266,11 +283,13 @@ class WorldRunner:
             if self._logged is not None:
                 self._logged.repeat_inputs(self.engine)
                 self.update_robots()  # those of the log come and go between these ticks
+                self._show_paint()
             if self.observer is not None:
                 self.observer.before_tick()
             result = self.engine.step(endpoints.demand.sensors)
             endpoints.publish_readings(self.world, result)
-            self.on_tick()
+            for act in self.on_tick:
+                act()
             if self.observer is not None:
                 self.observer.after_tick()
             if self.paused:
@@ -282,6 +301,19 @@ class WorldRunner:
             self.publish_state()
         if self._logged is not None and not self.paused and self.world.now_ns >= self._logged.ticks * TICK_NS:
             self.pause(True)
+
+    def _show_paint(self) -> None:
+        """Publish the scene again if its first floor has another color than it had."""
+        if self.world.painted is self._shown_paint:
+            return
+        self._shown_paint = color = self.world.painted
+        playground = self.world.playground
+        if color is not None:
+            first, *others = playground.floors
+            playground = replace(playground, floors=(replace(first, color=color), *others))
+        values = self._params.values
+        scene = SceneMessages.of(playground, values.map_frame, with_map=values.publish_map)
+        self._endpoints.world.publish_scene(scene)
 
     def _fallen(self) -> frozenset[str]:
         """Return the names (in the world) of the robots that fell off an edge."""
@@ -315,10 +347,13 @@ class WorldRunner:
         """Publish the start of a run in order: retained topics, then the clock at zero; the first readings follow."""
         self.scheduler.reset()
         self._endpoints.reset_robots(self.world.robots)
+        self._shown_paint = None
         self._endpoints.world.publish_scene(self.prepared.scene)
         self._endpoints.world.publish_objects(self.world, last=True)
         self.publish_state()
         self._endpoints.clock.publish(0, last=True)
+        for act in self.on_start:
+            act()
 
 
 def _fulfil(result: Future[T], function: Callable[[], T]) -> None:

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, field
 
 from thymio_sim_ros.sim.actuators import Actuator
-from thymio_sim_ros.sim.commands import SetPen
+from thymio_sim_ros.sim.commands import DrawJumps, SetPen
 from thymio_sim_ros.sim.model.geometry import Point
 from thymio_sim_ros.sim.model.primitives import Color, Stroke
 from thymio_sim_ros.sim.plugin_api.view import ActuatorView
@@ -56,6 +56,7 @@ class PenState:
     color: Color = (0.0, 0.0, 0.0)
     width_m: float = 0.003
     erase: bool = False
+    joins: bool = False
     changes: int = 0
     _at: Point | None = None
     _line: _Line | None = None
@@ -70,6 +71,12 @@ class PenState:
         """End the stroke; the next one begins at the position of the pen then."""
         self._at = self._line = None
 
+    def forget(self) -> None:
+        """Forget all strokes: the ground has none of them any more."""
+        self._lines.clear()
+        self._line = None
+        self.changes += 1
+
     def draw(self, view: ActuatorView) -> None:
         """Draw from where the pen was to where it is."""
         pose = view.pose
@@ -77,7 +84,7 @@ class PenState:
         way_m = math.dist(self._at, here) if self._at is not None else math.inf
         if way_m < _STEP_M:
             return
-        if way_m > _JUMP_M:
+        if way_m > _JUMP_M and not self.joins:
             self.lift()
         start = self._at or here
         seen = view.draw(start, here, self.width_m, None if self.erase else self.color)
@@ -103,7 +110,10 @@ def _is_straight(start: Point, end: Point, passed: list[Point]) -> bool:
     return all(abs(dx * (y - start[1]) - dy * (x - start[0])) <= _STRAIGHT_M * length for x, y in passed)
 
 
-def _apply(state: PenState, command: SetPen, _now_ns: int) -> None:
+def _apply(state: PenState, command: SetPen | DrawJumps, _now_ns: int) -> None:
+    if isinstance(command, DrawJumps):
+        state.joins = command.is_on
+        return
     low, high = PEN_WIDTHS_M
     if command.width_m is not None and not low <= command.width_m <= high:
         raise ValueError(f"SetPen: found a width of {command.width_m} m, expected {low} to {high}")
@@ -122,7 +132,7 @@ def _update(state: PenState, view: ActuatorView, _dt_s: float) -> None:
 
 ACTUATOR = Actuator(
     name="pen",
-    accepts=(SetPen,),
+    accepts=(SetPen, DrawJumps),
     begin=PenState,
     apply=_apply,
     update=_update,

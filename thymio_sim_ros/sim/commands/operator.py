@@ -11,6 +11,7 @@ __all__ = [
     "BUTTONS",
     "Clap",
     "ConnectCharger",
+    "DrawJumps",
     "Lift",
     "MoveObject",
     "MoveRobot",
@@ -69,6 +70,13 @@ class SetPen:
     color: tuple[float, float, float] | None = None
     width_m: float | None = None
     erase: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DrawJumps:
+    """Whether the pen draws a line to where a hand moves the robot; otherwise a stroke ends there."""
+
+    is_on: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,6 +228,7 @@ Operating = (
     | MoveRobot
     | MoveObject
     | SetPen
+    | DrawJumps
     | Tap
     | Tilt
     | Lift

@@ -82,6 +82,8 @@ class Picture:
         self._numbers: dict[Color, int] = {}
         for floor in floors:
             self._fill(floor.vertices, floor.color, everywhere=True)
+        self._first = self._first_now = self._number(floors[0].color) if floors else 0
+        """The color number of the first floor, at the start and now."""
         for paint in paints:
             if isinstance(paint, Print):
                 self._print(paint)
@@ -136,6 +138,20 @@ class Picture:
         if self._before is None:
             return False
         self.pixels[:], self._before = self._before, None
+        return True
+
+    def paint(self, color: Color | None) -> bool:
+        """Give the first floor another color, or its own with None; returns whether that is a change.
+
+        What has the same color as the floor, such as paint that cannot be seen on it, follows it.
+        """
+        number = self._first if color is None else self._number(color)
+        if number == self._first_now or not self._first:
+            return False
+        for pixels in (self.pixels, self._before):
+            if pixels is not None:
+                pixels[pixels == self._first_now] = number
+        self._first_now = number
         return True
 
     def _fill(self, vertices: Sequence[Point], color: Color, *, everywhere: bool) -> None:

@@ -47,7 +47,7 @@ NO_FLOOR = GroundSample(0.0, 0.0)
 
 
 class Ground:
-    """Reflectance and color of the ground. Invariant: only `draw_segment` and `restore` change it."""
+    """Reflectance and color of the ground. Invariant: only `draw_segment`, `paint` and `restore` change it."""
 
     def __init__(self, floors: Sequence[Floor], paints: Sequence[Mark]) -> None:
         """Rasterize the ground: later floors lie on earlier ones, paints on floors, later ones on earlier ones."""
@@ -126,6 +126,11 @@ class Ground:
     def restore(self) -> None:
         """Erase everything that was drawn."""
         if self._picture.restore():
+            self._tiles[:] = UNKNOWN
+
+    def paint(self, color: Color | None) -> None:
+        """Give the first floor another color, or its own with None."""
+        if self._picture.paint(color):
             self._tiles[:] = UNKNOWN
 
     def _forget(self, area: Area) -> None:
