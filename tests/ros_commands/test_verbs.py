@@ -237,3 +237,56 @@ def test_goals_are_sent_and_their_feedback_and_result_printed(run, make_node):
     assert printed.endswith("Result:\n    sequence:\n- 0\n- 1\n- 1\n\nGoal finished with status: SUCCEEDED\n")
     assert run(*words, "order: 9").endswith("Goal was rejected.\n")
     server.destroy()
+
+
+def test_types_are_printed_and_names_are_found_by_their_type(run, talker):
+    assert run("topic", "type", "/lab/said") == "std_msgs/msg/String\n"
+    assert run("topic", "find", "geometry_msgs/msg/Twist") == "/lab/drive\n"
+    assert run("topic", "find", "-c", "geometry_msgs/msg/PoseStamped") == "0\n"
+    assert run("service", "find", "std_srvs/srv/SetBool") == "/lab/switch\n"
+    with pytest.raises(CommandError, match="did you mean Twist"):
+        run("topic", "find", "geometry_msgs/msg/Twst")
+
+
+def test_a_service_is_described(run, talker):
+    talker.create_client(SetBool, "/lab/switch")
+    described = run("service", "info", "/lab/switch")
+    assert described == "Type: std_srvs/srv/SetBool\nClients count: 1\nServices count: 1\n"
+
+
+def test_parameters_are_loaded_as_they_were_dumped(run, talker, tmp_path):
+    file = tmp_path / "talker.yaml"
+    file.write_text(run("param", "dump", "/lab/talker").replace("speed: 1.5", "speed: 2.5"))
+    assert "Set parameter speed successful\n" in run("param", "load", "/lab/talker", str(file))
+    assert talker.get_parameter("speed").value == 2.5
+    assert list(talker.get_parameter("group.names").value) == ["a", "b"]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("/lab/talker:\n  ros__parameters:\n    speed: -1.0\n", "no parameter of .*file.yaml could be set"),
+        ("/other:\n  ros__parameters:\n    speed: 1.0\n", "found no parameters of /lab/talker"),
+        ("speed: [1.0\n", "file.yaml: "),
+        ("3", "found no parameters of /lab/talker, expected `/lab/talker:`"),
+    ],
+)
+def test_a_file_of_parameters_that_cannot_be_loaded_is_named(run, talker, tmp_path, text, reason):
+    file = tmp_path / "file.yaml"
+    file.write_text(text)
+    with pytest.raises(CommandError, match=reason):
+        run("param", "load", "/lab/talker", str(file))
+    with pytest.raises(CommandError, match=r"nothing.yaml: No such file or directory, expected a file of parameters"):
+        run("param", "load", "/lab/talker", str(tmp_path / "nothing.yaml"))
+    assert talker.get_parameter("speed").value == 1.5
+
+
+def test_publishing_waits_for_the_wanted_number_of_subscriptions(run, talker, make_node):
+    other = make_node("other")
+    heard = []
+    talker.create_timer(
+        0.2, lambda: other.create_subscription(Twist, "/lab/drive", heard.append, 1) if not heard else 0
+    )
+    printed = run("topic", "pub", "--once", "-w", "2", "/lab/drive", "geometry_msgs/msg/Twist", "{linear: {x: 2.0}}")
+    assert printed.startswith("Waiting for at least 2 matching subscription(s)...")
+    assert "publishing #1" in printed

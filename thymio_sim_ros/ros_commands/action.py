@@ -13,7 +13,7 @@ from rclpy.action import (
     get_action_server_names_and_types_by_node,
 )
 
-from thymio_sim_ros.ros_commands.member import Member, listed, load
+from thymio_sim_ros.ros_commands.member import Member, listed, load, print_types
 from thymio_sim_ros.ros_commands.node import split
 from thymio_sim_ros.ros_commands.values import from_yaml, to_yaml
 
@@ -46,6 +46,10 @@ def _info(member: Member, options: argparse.Namespace) -> None:
         print(f"Action {role}: {len(nodes)}")
         for one in nodes:
             print(f"    {one}")
+
+
+def _type(member: Member, options: argparse.Namespace) -> None:
+    print_types(member, "action", options.action, member.actions)
 
 
 def _send_goal(member: Member, options: argparse.Namespace) -> None:
@@ -85,5 +89,6 @@ def _cancel(member: Member, handle: ClientGoalHandle[Any, Any, Any], action: str
 VERBS: Mapping[str, Callable[[Member, argparse.Namespace], None]] = {
     "list": _list,
     "info": _info,
+    "type": _type,
     "send_goal": _send_goal,
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 __all__ = ["NOUNS", "add_verbs"]
 
@@ -45,12 +46,21 @@ def _topic() -> Iterator[tuple[str, str, Add]]:
         times = parser.add_mutually_exclusive_group()
         times.add_argument("-1", "--once", action="store_const", const=1, dest="times", help="publish one message")
         times.add_argument("-t", "--times", type=_count, help="publish this number of messages")
+        parser.add_argument(
+            "-w",
+            "--wait-matching-subscriptions",
+            type=_whole,
+            metavar="NUMBER",
+            help="wait for this number of subscriptions (1 with --once and --times, otherwise 0)",
+        )
 
     yield "list", "List topics", listed
     yield "echo", "Print the messages of a topic", echo
     yield "hz", "Print how many messages a topic has per second", window
     yield "bw", "Print how many bytes a topic has per second", window
     yield "info", "Print type and endpoints of a topic", info
+    yield "type", "Print the type of a topic", lambda parser: _name(parser, "topic")
+    yield "find", "List the topics of a type", lambda parser: _find(parser, "topics")
     yield "pub", "Publish messages", pub
 
 
@@ -68,6 +78,8 @@ def _service() -> Iterator[tuple[str, str, Add]]:
 
     yield "list", "List services", lambda parser: _list_options(parser, "services")
     yield "type", "Print the type of a service", lambda parser: _name(parser, "service")
+    yield "info", "Print type, clients and servers of a service", lambda parser: _name(parser, "service")
+    yield "find", "List the services of a type", lambda parser: _find(parser, "services")
     yield "call", "Call a service and print its response", call
 
 
@@ -83,10 +95,15 @@ def _param() -> Iterator[tuple[str, str, Add]]:
         get(parser)
         parser.add_argument("value", help="in YAML: 2.0 is a double, 2 an integer, true a boolean")
 
+    def load(parser: argparse.ArgumentParser) -> None:
+        parser.add_argument("node")
+        parser.add_argument("file", type=Path, help="a file of parameters, as `param dump` prints it")
+
     yield "list", "List parameters", of_node
     yield "get", "Print the value of a parameter", get
     yield "set", "Set a parameter", assign
     yield "dump", "Print all parameters of a node as a file of parameters", lambda parser: _name(parser, "node")
+    yield "load", "Set the parameters of a node from a file", load
 
 
 def _action() -> Iterator[tuple[str, str, Add]]:
@@ -96,6 +113,7 @@ def _action() -> Iterator[tuple[str, str, Add]]:
 
     yield "list", "List actions", lambda parser: _list_options(parser, None)
     yield "info", "Print clients and servers of an action", lambda parser: _name(parser, "action")
+    yield "type", "Print the type of an action", lambda parser: _name(parser, "action")
     yield "send_goal", "Send a goal and print its result; Ctrl-C cancels it", send_goal
 
 
@@ -107,8 +125,17 @@ def _name(parser: argparse.ArgumentParser, of: str) -> None:
     parser.add_argument(of)
 
 
+def _find(parser: argparse.ArgumentParser, hidden: str) -> None:
+    parser.add_argument("type", help="such as std_srvs/srv/Empty")
+    _count_and_hidden(parser, hidden)
+
+
 def _list_options(parser: argparse.ArgumentParser, hidden: str | None) -> None:
     parser.add_argument("-t", "--show-types", action="store_true", help="also print the types")
+    _count_and_hidden(parser, hidden)
+
+
+def _count_and_hidden(parser: argparse.ArgumentParser, hidden: str | None) -> None:
     parser.add_argument("-c", "--count", action="store_true", help="print their number only")
     if hidden is not None:
         name = _HIDDEN.format(hidden)
@@ -120,6 +147,12 @@ def _message(parser: argparse.ArgumentParser, of: str, example: str) -> None:
     parser.add_argument(of)
     parser.add_argument("type", help=f"such as {example}")
     parser.add_argument("values", nargs="?", default="{}", help="fields in YAML, such as '{linear: {x: 0.1}}'")
+
+
+def _whole(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"found {text}, expected a number from 0")
+    return int(text)
 
 
 def _count(text: str) -> int:

@@ -17,9 +17,11 @@ from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_
 from thymio_sim_ros.ros_commands.errors import CommandError
 
 if TYPE_CHECKING:
+    import argparse
+
     from rclpy.task import Future
 
-__all__ = ["ANSWER_S", "Member", "listed", "load"]
+__all__ = ["ANSWER_S", "Member", "find_by_type", "listed", "load", "print_types"]
 
 _STEP_S = 0.05
 _QUIET_S = 0.5
@@ -128,6 +130,20 @@ def listed(names: NamesAndTypes, *, types: bool, count: bool, hidden: bool) -> N
         return
     for name in shown:
         print(f"{name} [{', '.join(names[name])}]" if types else name)
+
+
+def print_types(member: Member, what: str, name: str, known: Callable[[], NamesAndTypes]) -> None:
+    """Print the types of a topic, service or action. Raises CommandError."""
+    for kind in known()[member.find(what, name, known)]:
+        print(kind)
+
+
+def find_by_type(member: Member, options: argparse.Namespace, form: str, known: Callable[[], NamesAndTypes]) -> None:
+    """Print the names that have the type `options.type`. Raises CommandError for an unknown type."""
+    kind, _ = load(options.type, form)
+    member.discover()
+    found = {name: types for name, types in known().items() if kind in types}
+    listed(found, types=False, count=options.count, hidden=options.include_hidden)
 
 
 def load(name: str, form: str) -> tuple[str, Any]:

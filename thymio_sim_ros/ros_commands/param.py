@@ -9,7 +9,12 @@ from typing import Any
 
 import yaml
 from rcl_interfaces.msg import ParameterType, ParameterValue
-from rclpy.parameter import Parameter, get_parameter_value, parameter_value_to_python
+from rclpy.parameter import (
+    Parameter,
+    get_parameter_value,
+    parameter_dict_from_yaml_file,
+    parameter_value_to_python,
+)
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
@@ -81,6 +86,28 @@ def _dump(member: Member, options: argparse.Namespace) -> None:
     yaml.safe_dump({full: {"ros__parameters": tree}}, sys.stdout, default_flow_style=False, allow_unicode=True)
 
 
+def _load(member: Member, options: argparse.Namespace) -> None:
+    full, client = _client(member, options.node)
+    try:
+        values = parameter_dict_from_yaml_file(str(options.file), use_wildcard=True, target_nodes=[full])
+    except OSError as error:
+        raise CommandError(f"{options.file}: {error.strerror}, expected a file of parameters") from error
+    except yaml.YAMLError as error:
+        raise CommandError(f"{options.file}: {' '.join(str(error).split())}") from error
+    except (RuntimeError, AttributeError, TypeError, ValueError) as error:  # raised by rclpy for other contents
+        raise CommandError(
+            f"{options.file}: found no parameters of {full}, expected `{full}:` and below it `ros__parameters:`"
+        ) from error
+    _ready(member, full, client)
+    wanted = [Parameter.from_parameter_msg(value) for value in values.values()]
+    results = member.answer(client.set_parameters(wanted), full).results
+    for name, result in zip(values, results, strict=True):
+        reason = f": {result.reason}" if result.reason else ""
+        print(f"Set parameter {name} {'successful' if result.successful else 'failed'}{reason}")
+    if not any(result.successful for result in results):
+        raise CommandError(f"no parameter of {options.file} could be set")
+
+
 def _has_parameters(member: Member, full: str) -> bool:
     services = member.services()
     return all(f"{full}/{service}" in services for service in _SERVICES)
@@ -120,4 +147,5 @@ VERBS: Mapping[str, Callable[[Member, argparse.Namespace], None]] = {
     "get": _get,
     "set": _set,
     "dump": _dump,
+    "load": _load,
 }

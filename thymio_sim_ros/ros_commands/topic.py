@@ -10,7 +10,7 @@ from rclpy.duration import Duration
 
 from thymio_sim_ros.bags import qos
 from thymio_sim_ros.ros_commands import rates
-from thymio_sim_ros.ros_commands.member import Member, listed, load
+from thymio_sim_ros.ros_commands.member import Member, find_by_type, listed, load, print_types
 from thymio_sim_ros.ros_commands.values import LONGEST, from_yaml, part_of, to_yaml
 
 if TYPE_CHECKING:
@@ -41,6 +41,14 @@ def _info(member: Member, options: argparse.Namespace) -> None:
         print(f"{role} count: {len(found)}", end=end)
         for one in found if options.verbose else ():
             print(one, end=end)
+
+
+def _type(member: Member, options: argparse.Namespace) -> None:
+    print_types(member, "topic", options.topic, member.topics)
+
+
+def _find(member: Member, options: argparse.Namespace) -> None:
+    find_by_type(member, options, "msg", member.topics)
 
 
 def _subscribe(
@@ -95,9 +103,11 @@ def _pub(member: Member, options: argparse.Namespace) -> None:
     from_yaml(options.values, kind, member.node)  # errors come before the wait
     topic = member.check_type("topic", options.topic, name, member.topics)
     publisher = member.node.create_publisher(kind, topic, _DEPTH)
-    if options.times is not None and not publisher.get_subscription_count():
-        print("Waiting for at least 1 matching subscription(s)...", flush=True)
-        member.spin_until(publisher.get_subscription_count)
+    wanted = options.wait_matching_subscriptions
+    wanted = (options.times is not None) if wanted is None else wanted
+    if publisher.get_subscription_count() < wanted:
+        print(f"Waiting for at least {wanted:d} matching subscription(s)...", flush=True)
+        member.spin_until(lambda: publisher.get_subscription_count() >= wanted)
     print("publisher: beginning loop", flush=True)
     count = 0
 
@@ -123,5 +133,7 @@ VERBS: Mapping[str, Callable[[Member, argparse.Namespace], None]] = {
     "hz": _measure(rates.rate),
     "bw": _measure(rates.bandwidth),
     "info": _info,
+    "type": _type,
+    "find": _find,
     "pub": _pub,
 }
