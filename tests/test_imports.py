@@ -130,6 +130,8 @@ RULES = {
     f"{OURS}.tf.transformations": Rule(frozenset(), frozenset({"numpy"}), NO_WALL_CLOCK),
     # students copy them: rclpy, messages, and tf2 for those who have the wheels only
     f"{OURS}.examples": Rule(_names("tf"), ROS),
+    # programs of a foreign package, with its types
+    f"{OURS}.turtlesim": Rule(frozenset(), ROS | {"turtlesim"}),
     f"{OURS}.launch": Rule(frozenset(), frozenset({"launch", "launch_ros"})),
     f"{OURS}.batch_runs": Rule(_names("batch_runs"), frozenset({"dask", "distributed"})),
     f"{OURS}.sweep": Rule(
@@ -282,6 +284,7 @@ def test_everything_without_ros_can_be_imported_where_rclpy_cannot() -> None:
         f"{OURS}.launch",
         f"{OURS}.tf",
         f"{OURS}.examples",
+        f"{OURS}.turtlesim",
         f"{OURS}.cli.preload",
     )
     pure = [module for module in SOURCES if not any(_below(module, name) for name in with_ros)]
