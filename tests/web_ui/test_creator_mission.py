@@ -9,7 +9,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.creator_support import choose_more, click, open_creator
-from tests.web_ui.page_support import MARKS
+from tests.web_ui.page_support import MARKS, build_playground
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros.missions import load_mission
 
@@ -67,6 +67,12 @@ def test_a_mission_is_made_saved_and_opened_again(at_rest, page, tmp_path):
     assert mission.hints == ("Turn left.", "Then stop.")
     assert mission.text_of("goal_2") == "Its light is green"
     assert list(mission.zones) == ["rectangle_1"]
+    page.click("#creator-try")
+    page.wait_for_function("window.thymio.state().mission?.title === 'My playground'")
+    playwright.expect(page.locator(".mission-form")).to_have_count(0)
+    page.wait_for_function("document.body.innerText.includes('Drive to the square.')")
+    build_playground(page)
+    page.click(".mission-form summary")
     page.click("[data-verb=no-mission]")
     page.wait_for_function("window.thymio.built().playground.mission === undefined")
     page.set_input_files("#creator-file", str(saved))

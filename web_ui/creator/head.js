@@ -41,8 +41,9 @@ export class Head {
       "button",
       { type: "button", class: "btn you", id: "creator-try", title: t("file.tryHelp"), onclick: tryIt },
       icon("run"),
-      t("file.try"),
+      h("span", {}, t("file.try")),
     );
+    this.tries = [t("file.try"), t("file.tryMission")];
     const leave = t("file.leave");
     const back = h(
       "button",
@@ -64,8 +65,11 @@ export class Head {
 
   /** @param {string} offline  why the simulator cannot be reached, else empty */
   render(offline) {
-    const { kept } = this.options.session;
+    const { session } = this.options;
+    const { kept } = session;
     lock(this.attempt, offline);
+    const [playground, mission] = this.tries;
+    setText(/** @type {Element} */ (this.attempt.lastElementChild), session.model.playground.mission === undefined ? playground : mission);
     this.title.render();
     setAttribute(this.kept, "data-kept", kept);
     setText(this.kept, this.words[kept]);
@@ -157,17 +161,26 @@ export class Head {
     }).element;
   }
 
-  #save() {
+  /** The file of the mission; null if something is missing in it, which is reported. */
+  packMission() {
     const { session, report, labels } = this.options;
     const { playground } = session.model;
-    const isMission = playground.mission !== undefined;
     const [problem] = problemsOf(playground);
-    if (problem !== undefined) return report(problem.phrase);
-    const name = isMission ? session.fileName.replace(/json$/, "zip") : session.fileName;
-    if (isMission) download(name, pack(playground, (goal) => usualText(labels.t, goal)), "application/zip");
-    else download(name, session.text, "application/json");
+    if (problem !== undefined) {
+      report(problem.phrase);
+      return null;
+    }
+    return { name: session.fileName.replace(/json$/, "zip"), content: pack(playground, (goal) => usualText(labels.t, goal)) };
+  }
+
+  #save() {
+    const { session, report } = this.options;
+    const isMission = session.model.playground.mission !== undefined;
+    const file = isMission ? this.packMission() : { name: session.fileName, content: session.text };
+    if (file === null) return;
+    download(file.name, file.content, isMission ? "application/zip" : "application/json");
     session.noteSaved();
-    report({ word: "status.saved", values: { name } });
+    report({ word: "status.saved", values: { name: file.name } });
   }
 
   #create() {

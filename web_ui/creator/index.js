@@ -126,6 +126,11 @@ export class Creator {
     this.head.refuse(reasons);
   }
 
+  /** The file of the mission that is being made; null if something is missing in it, which is shown. */
+  packMission() {
+    return this.head.packMission();
+  }
+
   /** Open a playground file that was dropped. @param {File} file @param {Place} place */
   open(file, place) {
     void this.head.open(file, place);

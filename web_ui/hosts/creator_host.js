@@ -232,13 +232,18 @@ export class CreatorHost {
     return translator(this.context?.language ?? "en", WORDS)("new.title");
   }
 
-  /** Load the playground into the simulator; if it is rejected, the creator stays open and shows the reason. */
+  /** Load the playground, or start the mission, in the simulator; if that is rejected, the creator stays open and shows the reason. */
   async #tryIt() {
     const { context, session, creator } = this;
     if (context === null || session === null || creator === null) return;
     const { actions, store, text, language } = context;
     creator.refuse(null);
     session.keep();
+    if (session.model.playground.mission !== undefined) {
+      const mission = creator.packMission();
+      if (mission !== null && (await actions.startMission(mission.name, mission.content))) this.close();
+      return;
+    }
     const { fileName, text: content } = session;
     await actions.loadPlayground(fileName, new TextEncoder().encode(content));
     const upload = store.state.uploads.playground;
