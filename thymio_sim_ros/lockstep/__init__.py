@@ -6,7 +6,8 @@ loaded, so that only simulated time ends a wait:
 
 - `turns`: the threads, simulated time, and whose turn it is
 - `threads`, `clocks`, `keyboard`: locks and threads, `time` and `select`, standard input
-- `ros_waits`, `ros_graph`: clocks, timers and executors of rclpy; discovery and the barrier between processes
-- `barrier`, `matching`, `channel`: what both processes use
+- `program_graph`, `graph_link`: the embedded graph, and how it is one with that of the test
+- `installed_ros`, `matching`: the same with an installed ROS: waits of rclpy, discovery, marks behind messages
+- `channel`, `real_time`: the pipe between both processes, and waits for the other one
 - `main`: the process
 """
