@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -15,6 +16,7 @@ from tests.processes import free_port, wait_for_port
 PAGE = Path(__file__).parents[1] / "docs/serve-a-school.md"
 PREFIX = "/thymio/"
 MAIN = """\
+{user}
 daemon off;
 pid {folder}/nginx.pid;
 error_log {folder}/error.log;
@@ -34,8 +36,16 @@ http {{
 class Nginx:
     """A running nginx with TLS; skips the test where nginx or openssl is missing."""
 
-    def __init__(self, folder: Path, port: int, *, passes_upgrade: bool = True) -> None:
-        """Start it in front of a server on loopback."""
+    def __init__(
+        self,
+        folder: Path,
+        port: int,
+        *,
+        passes_upgrade: bool = True,
+        removes_path: bool = True,
+        is_expired: bool = False,
+    ) -> None:
+        """Start it in front of a server on loopback, perhaps with a mistake, or with a certificate that has expired."""
         nginx = shutil.which("nginx", path="/usr/sbin:/usr/local/sbin:/usr/bin")
         if nginx is None or shutil.which("openssl") is None:
             pytest.skip("nginx or openssl is not installed")
@@ -45,7 +55,12 @@ class Nginx:
         server = _documented(folder, self.port, port)
         if not passes_upgrade:
             server = re.sub(r"proxy_set_header (Upgrade|Connection) .*;", "", server)
-        (folder / "nginx.conf").write_text(MAIN.format(folder=folder, server=server))
+        if not removes_path:
+            server = server.replace(f"http://127.0.0.1:{port}/;", f"http://127.0.0.1:{port};")
+        self.certificate = folder / "certificate.pem"
+        """The file with its certificate, which clients trust by this file only."""
+        _make_certificate(folder, is_expired=is_expired)
+        (folder / "nginx.conf").write_text(MAIN.format(user=_user(), folder=folder, server=server))
         command = [nginx, "-p", str(folder), "-c", str(folder / "nginx.conf"), "-e", str(folder / "error.log")]
         self._process = subprocess.Popen(command)
         wait_for_port(self.port)
@@ -81,7 +96,19 @@ def _documented(folder: Path, listen: int, port: int) -> str:
     for documented, used in files.items():
         assert text.count(documented) == 1, documented
         text = text.replace(documented, used)
-    request = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=127.0.0.1"]
-    out = ["-keyout", f"{folder}/key.pem", "-out", f"{folder}/certificate.pem"]
-    subprocess.run([*request, *out], check=True, capture_output=True, timeout=PROGRAM_S)
     return text
+
+
+def _make_certificate(folder: Path, *, is_expired: bool) -> None:
+    key, certificate, extensions = folder / "key.pem", folder / "certificate.pem", folder / "extensions.cnf"
+    extensions.write_text("subjectAltName=IP:127.0.0.1")
+    request = ["req", "-new", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=127.0.0.1", "-keyout", key]
+    sign = ["x509", "-req", "-signkey", key, "-days", "-1" if is_expired else "2", "-extfile", extensions]
+    for command in ([*request, "-out", folder / "request.pem"], [*sign, "-in", folder / "request.pem"]):
+        done = subprocess.run(["openssl", *command], check=True, capture_output=True, timeout=PROGRAM_S)
+    certificate.write_bytes(done.stdout)
+
+
+def _user() -> str:
+    """The user of the processes of nginx, which must be able to write in the folder of a test; root changes it."""
+    return "user root;" if hasattr(os, "geteuid") and os.geteuid() == 0 else ""
