@@ -17,6 +17,7 @@ from thymio_sim_ros.batch_runs.errors import EngineError
 from thymio_sim_ros.batch_runs.failure import Failure
 from thymio_sim_ros.cli.batch import CLUSTER, Progress, add_cluster_options, check_dask
 from thymio_sim_ros.cli.errors import UsageError
+from thymio_sim_ros.cli.mission_assignment import mission_assignment
 from thymio_sim_ros.cli.ros.graph_choice import check_ros
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.grading import assignment as assignments
@@ -38,14 +39,16 @@ FAILED = 1
 WRITE_S = 5.0
 """Time between two tables while submissions are graded."""
 
+_TESTS, _MISSIONS = (".py", ".toml"), (".json", ".zip")
 _OPEN = ("limits", "process")
 """Levels that do not protect files."""
 _RUNS_PROGRAM = re.compile(rb"\bros\.run\(")
 
 EXAMPLE = """\
 SUBMISSIONS is a folder or zip with a folder, file or zip for each pupil, also as exported by Moodle or Canvas.
-FILE is a pytest file, or a TOML file that names tests, hidden tests, expected files and limits
-(docs/grading-a-class.md). The same command continues an interrupted grading, and grades only what is new or changed.
+FILE is a pytest file, a TOML file that names tests, hidden tests, expected files and limits
+(docs/grading-a-class.md), or a mission, whose stars are points (docs/missions.md). The same command continues an
+interrupted grading, and grades only what is new or changed.
 
 exit code: 0 all submissions have been graded, whatever their marks; 1 a machine could not grade some of them (column
 `remark`), or the same set-up failed for all; 2 rejected input, a solution without all points, or a cluster that cannot
@@ -63,7 +66,7 @@ def run(argv: Sequence[str]) -> int:
     if options.ros:
         check_ros()
     try:
-        assignment = replace(assignments.load(options.assignment), has_installed_ros=options.ros)
+        assignment = replace(_assignment(options.assignment), has_installed_ros=options.ros)
         handed_in = submissions.find(options.submissions)
         prepared = [submissions.prepared(submission, assignment.expected) for submission in handed_in]
         check_system(assignment)
@@ -179,6 +182,13 @@ class _Execution:
         self._written_s = time.monotonic()
 
 
+def _assignment(path: Path) -> Assignment:
+    """The assignment of a file with tests, or of a mission: a file, or the name of a shipped one."""
+    if path.suffix in _TESTS or (path.suffix not in _MISSIONS and path.exists()):
+        return assignments.load(path)
+    return mission_assignment(str(path))
+
+
 def _check_solution(assignment: Assignment, path: Path, tests: Sequence[GradedTest], level: str) -> None:
     """Grade the solution of the assignment. Raises GradingError with the first test in which it loses points."""
     submission = submissions.prepared(submissions.read_one(path), assignment.expected)
@@ -238,7 +248,9 @@ def _parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     parser.add_argument("submissions", type=Path, metavar="SUBMISSIONS", help="folder or zip of the class")
-    parser.add_argument("--assignment", type=Path, required=True, metavar="FILE", help="tests: *.py or *.toml")
+    parser.add_argument(
+        "--assignment", type=Path, required=True, metavar="FILE", help="tests: *.py or *.toml; or a mission"
+    )
     parser.add_argument(
         "-o", "--output", type=Path, default=Path("grades"), metavar="DIR", help="folder to write (default: grades)"
     )

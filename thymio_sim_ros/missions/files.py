@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 
 from thymio_sim_ros.sim.model.fields import FieldError, describe
 
-__all__ = ["MAX_ARCHIVE_BYTES", "MAX_PICTURE_BYTES", "Files", "is_archive", "unpack"]
+__all__ = ["MAX_ARCHIVE_BYTES", "MAX_PICTURE_BYTES", "Files", "is_archive", "located", "unpack"]
 
 MAX_ARCHIVE_BYTES = 10_000_000
 """Of all files of a zip, unpacked."""
@@ -52,6 +52,13 @@ class Files:
 def is_archive(data: bytes) -> bool:
     """Whether a file is a zip."""
     return data.startswith(_ZIP)
+
+
+def located(path: Path) -> Path:
+    """The file of a mission: the same, or that of a zip, which is unpacked. Raises FieldError, OSError."""
+    with path.open("rb") as file:
+        head = file.read(len(_ZIP))
+    return unpack(path.read_bytes()) if is_archive(head) else path
 
 
 def unpack(data: bytes) -> Path:

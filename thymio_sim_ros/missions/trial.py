@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from thymio_sim_ros.device.programs.program import ThymioProgram
+from thymio_sim_ros.device.programs.program import ThymioProgram, load_program
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.files.loading import NO_PROGRAM, load_playground, read_assignments, read_program
 from thymio_sim_ros.missions.judge import Judge
@@ -37,12 +37,13 @@ def judged_run(mission: Mission, program: str = NO_PROGRAM, *, seed: int = 0) ->
     `read_program`.
     """
     _, playground = load_playground(mission.playground)
+    names = [start.name for start in playground.robots]
+    programs = dict.fromkeys(names, load_program("", NO_PROGRAM)) | programs_of_others(mission, playground)
     robot = robot_of(mission, playground)
-    others = programs_of_others(mission, playground)
-    found = read_assignments(program, [start.name for start in playground.robots])
-    own = found[robot].program if robot in found else None
-    engine = Engine(playground, others if own is None else others | {robot: own}, seed=seed)
-    return run_to_end(mission, engine)
+    own = read_assignments(program, names).get(robot)
+    if own is not None and own.program is not None:
+        programs[robot] = own.program
+    return run_to_end(mission, Engine(playground, programs, seed=seed))
 
 
 def run_to_end(mission: Mission, engine: Engine) -> Judge:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from thymio_sim_ros.testing.checks import Check, emitted, no_contact, reached, shows, slower_than
 from thymio_sim_ros.testing.classroom import Classroom
 from thymio_sim_ros.testing.line_following import followed_line
-from thymio_sim_ros.testing.mission import judged
+from thymio_sim_ros.testing.mission import check_star, judged
 from thymio_sim_ros.testing.record import Event, Moment, Touch
 from thymio_sim_ros.testing.thymio import Thymio
 
@@ -19,6 +19,7 @@ __all__ = [
     "Moment",
     "Thymio",
     "Touch",
+    "check_star",
     "emitted",
     "followed_line",
     "judged",
