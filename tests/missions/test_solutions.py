@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -102,3 +103,9 @@ def test_it_has_a_small_picture(name: str) -> None:
 def test_the_file_fits_the_schema(name: str) -> None:
     schema = json.loads((MISSIONS[name].path.parents[1] / "mission.schema.json").read_text(encoding="utf-8"))
     jsonschema.validate(json.loads(MISSIONS[name].path.read_text(encoding="utf-8")), schema)
+
+
+def test_the_course_lists_all_missions_in_order() -> None:
+    overview = (Path(__file__).parents[2] / "docs" / "course" / "README.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^\| \d .*\]\(.*?\) \(`(\w+)`\) \| .* \| ([a-z, ]+) \|$", overview, re.MULTILINE)
+    assert listed == [(name, ", ".join(each.mission.languages)) for name, each in MISSIONS.items()]
