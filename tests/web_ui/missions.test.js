@@ -1,5 +1,6 @@
 // Missions on the page: what is kept, what a try says, what the view draws.
 
+import { readFileSync } from "node:fs";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
@@ -7,11 +8,12 @@ import texts from "../../web_ui/i18n/missions.texts.js";
 import { translator } from "../../web_ui/i18n/index.js";
 import { outcome, starTexts } from "../../web_ui/missions/card.js";
 import { fetchMissions, firstOpen, titleIn } from "../../web_ui/missions/list.js";
+import { blockWords, codeLines, firstMissing, nextStep } from "../../web_ui/missions/next_step.js";
 import { Progress } from "../../web_ui/missions/progress.js";
 import { firstOf } from "../../web_ui/missions/stars.js";
 import { MARKER } from "../../web_ui/state/markers.js";
 import { attemptOf, INITIAL, reduce } from "../../web_ui/state/index.js";
-import { factText, hintsOf, missionMarkers, missionText } from "../../web_ui/state/mission.js";
+import { factText, hintsOf, measuredText, missionMarkers, missionText } from "../../web_ui/state/mission.js";
 import { editorsOf } from "../../web_ui/hosts/program_host.js";
 
 const t = translator("en", texts);
@@ -36,7 +38,19 @@ const MISSION = {
     hole: { kind: "disc", x_m: 0, y_m: 0, radius_m: 0.5 },
   },
   programs: {},
-  translations: { de: { title: "In die Bucht", story: "", hints: ["Drehen."], facts: { parked: "In der Bucht" } } },
+  solutions: {},
+  toolbox: { hide: [], modes: null },
+  missing: { parked: "It is not in the bay", crash: "It touched something" },
+  translations: {
+    de: {
+      title: "In die Bucht",
+      story: "",
+      hints: ["Drehen."],
+      facts: { parked: "In der Bucht" },
+      missing: { parked: "Nicht in der Bucht" },
+      stars: ["In 15 Sekunden"],
+    },
+  },
 };
 
 /** @type {import("../../web_ui/state/mission.js").Try} */
@@ -51,6 +65,8 @@ const TRY = {
   done: [true, false],
   stars: [false, false, false],
   broken: [],
+  missing: [],
+  measured: {},
   trace: [],
 };
 
@@ -137,11 +153,11 @@ test("a try says what became of it in words of the mission", () => {
   assert.equal(words({ state: "passed" }), "Mission passed!");
   assert.equal(words({ state: "failed", reason: "facts", broken: ["crash"] }), "Not passed: It touched something");
   assert.equal(
-    words({ state: "failed", reason: "time" }),
-    "The time is over. Still missing: It touched something, It is in the bay",
+    words({ state: "failed", reason: "time", missing: ["parked"] }),
+    "The time is over. Still missing: It is not in the bay",
   );
   assert.match(words({ state: "failed", reason: "hand" }), /hand/);
-  assert.match(words({ state: "failed", reason: "time" }, "de"), /In der Bucht/);
+  assert.match(words({ state: "failed", reason: "time", missing: ["parked"] }, "de"), /Nicht in der Bucht/);
 });
 
 test("texts are those of the language, else the mission's own", () => {
@@ -151,7 +167,8 @@ test("texts are those of the language, else the mission's own", () => {
   assert.equal(factText(MISSION, "de", "crash"), "It touched something");
   assert.equal(factText(MISSION, "en", "unknown"), "unknown");
   assert.deepEqual(hintsOf(MISSION, "de"), ["Drehen.", "Stop."]);
-  assert.deepEqual(starTexts(MISSION, t), ["The goal is reached", "Within 15 seconds", "Five rows"]);
+  assert.deepEqual(starTexts(MISSION, "en", t), ["The goal is reached", "Within 15 seconds", "Five rows"]);
+  assert.deepEqual(starTexts(MISSION, "de", t), ["The goal is reached", "In 15 Sekunden", "Five rows"]);
 });
 
 test("zones lie on the ground, turned as they are", () => {
@@ -192,4 +209,41 @@ test("mission and try come in any order, and end together", () => {
 test("the Scratch look is an editor of blocks", () => {
   assert.equal(editorsOf(null), null);
   assert.deepEqual(editorsOf(["vpl", "scratch", "ros"]), ["vpl", "blocks", "ros"]);
+});
+
+test("quantities stand beside their goals", () => {
+  const attempt = { ...TRY, measured: /** @type {Record<string, [number, number, string]>} */ ({ far: [0.321, 0.5, "m"], turn: [12.4, 90, "°"], laps: [0.4, 1, ""] }) };
+  assert.equal(measuredText(attempt, "far", "en"), "0.32 / 0.5 m");
+  assert.equal(measuredText(attempt, "far", "de"), "0,32 / 0,5 m");
+  assert.equal(measuredText(attempt, "turn", "en"), "12 / 90°");
+  assert.equal(measuredText(attempt, "laps", "en"), "0.4 / 1");
+  assert.equal(measuredText(attempt, "parked", "en"), "");
+  assert.equal(measuredText(null, "far", "en"), "");
+});
+
+test("the next step is what a solution has first that the program lacks", () => {
+  assert.equal(firstMissing(["a", "b", "b"], ["b", "a"]), "b");
+  assert.equal(firstMissing(["a", "b"], ["b", "x", "a"]), null);
+  const file = (/** @type {string} */ code) => `<!DOCTYPE aesl-source>\n<network><node nodeId="1" name="thymio-II">${code}</node></network>`;
+  assert.deepEqual(codeLines(file("onevent  prox # near\n\n  motor.left.target = 3")), ["onevent prox", "motor.left.target = 3"]);
+  assert.deepEqual(codeLines("<network"), []);
+});
+
+/** @param {string} language */
+const solution = (language) =>
+  readFileSync(new URL(`../../docs/course/1-buttons/programs/${language}.aesl`, import.meta.url), "utf8");
+
+test("the next row of VPL is said in words", async () => {
+  const whole = { kind: "vpl", solution: solution("solution"), language: "en" };
+  assert.equal(await nextStep({ ...whole, own: whole.solution }), null);
+  assert.match((await nextStep({ ...whole, own: "" })) ?? "", /→/);
+});
+
+test("the next block is said in words", async () => {
+  const table = { "block.motor": "set {VARIABLE} to {VALUE}" };
+  const text = '<block type="motor" id="1"><field name="VARIABLE">left</field><value name="VALUE"><block type="number"></block></value></block>';
+  assert.deepEqual(blockWords(text, table), ["set left to …"]);
+  const course = readFileSync(new URL("../../docs/course/3-blocks/programs/solution.aesl", import.meta.url), "utf8");
+  assert.equal(await nextStep({ kind: "blocks", solution: course, own: course, language: "de" }), null);
+  assert.ok(await nextStep({ kind: "blocks", solution: course, own: "", language: "de" }));
 });

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +16,14 @@ __all__ = ["described", "progress"]
 WAITING = "waiting"
 """State before the first try, and after the program was stopped."""
 
+_NOTHING: Mapping[str, Any] = {"broken": [], "missing": [], "measured": {}, "trace": []}
 _KINDS = {kind: word for word, kind in ZONES.items()}
 
 
 def described(mission: Mission) -> dict[str, Any]:
-    """What a pupil needs of a mission: texts in all languages, zones, start programs.
+    """What a pupil needs of a mission: texts in all languages, zones, start programs, solutions for the next step.
 
-    Raises OSError, UnicodeDecodeError for a start program that cannot be read.
+    Raises OSError, UnicodeDecodeError for a program that cannot be read.
     """
     return {
         "title": mission.title,
@@ -30,15 +32,20 @@ def described(mission: Mission) -> dict[str, Any]:
         "time_s": mission.time_s,
         "hints": list(mission.hints),
         "facts": {name: mission.text_of(name) for name in mission.facts},
+        "missing": {name: mission.missing_text(name) for name in mission.facts},
         "stars": [{"text": star.text, "within_s": star.within_s, "length": star.length} for star in mission.stars],
         "zones": {name: {"kind": _KINDS[type(zone)]} | fields.write(zone) for name, zone in mission.zones.items()},
-        "programs": {language: _program(Path(path)) for language, path in mission.programs.items()},
+        "programs": {language: _text(path) for language, path in mission.programs.items()},
+        "solutions": {language: _text(path) for language, path in mission.solutions.items()},
+        "toolbox": {"hide": list(mission.toolbox.hide), "modes": mission.toolbox.modes},
         "translations": {
             language: {
                 "title": texts.title,
                 "story": texts.story,
                 "hints": list(texts.hints),
                 "facts": dict(texts.facts),
+                "missing": dict(texts.missing),
+                "stars": list(texts.stars),
             }
             for language, texts in mission.translations.items()
         },
@@ -50,18 +57,18 @@ def progress(live: LiveMission) -> dict[str, Any]:
 
     `checklist` has the facts of each line, `done` whether it is done. `state` is waiting, running, passed or failed;
     `reason` says why it has failed: facts (those of `broken`), time, or hand. `trouble`: see `Trouble`. Times are
-    simulated seconds; the way is in m.
+    simulated seconds; the way is in m. `measured` has value, goal and unit of the facts that are quantities.
     """
     verdict, judge = live.verdict, live.judge
     checklist = live.checklist if verdict is None else verdict.checklist
-    shown = {
+    shown: dict[str, Any] = {
         "tries": live.tries,
         "trouble": live.trouble.value,
         "checklist": [list(item.facts) for item in checklist],
         "done": [item.is_done for item in checklist],
     }
     if verdict is None or judge is None:
-        return shown | {"state": WAITING, "reason": "", "at_s": 0.0, "stars": [], "broken": [], "trace": []}
+        return shown | {"state": WAITING, "reason": "", "at_s": 0.0, "stars": [], **_NOTHING}
     is_failed = live.is_helped or verdict.state.value == "failed"
     reason = "hand" if live.is_helped else "time" if verdict.is_late else "facts" if is_failed else ""
     return shown | {
@@ -70,9 +77,13 @@ def progress(live: LiveMission) -> dict[str, Any]:
         "at_s": verdict.at_s,
         "stars": [False] * len(verdict.stars) if live.is_helped else list(verdict.stars),
         "broken": list(verdict.broken),
+        "missing": list(judge.missing()) if verdict.is_late else [],
+        "measured": {
+            name: [round(one.value, 3), round(one.goal, 3), one.unit] for name, one in judge.measured().items()
+        },
         "trace": [] if live.is_running else [[round(x, 3), round(y, 3)] for x, y in judge.trace],
     }
 
 
-def _program(path: Path) -> dict[str, str]:
-    return {"name": path.name, "text": path.read_text(encoding="utf-8")}
+def _text(path: str) -> str:
+    return Path(path).read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Protocol
 
 from thymio_sim_ros.device.programs.program import ThymioProgram
@@ -70,6 +70,9 @@ Index = Annotated[float, Number("place in an array", 0.0, 1000.0)]
 Laps = Annotated[float, Number("laps", 0.0, 100.0)]
 
 
+_Sampled = tuple[Callable[[Robot], TrackProgress], TrackProgress]
+
+
 @dataclass(frozen=True, slots=True)
 class Scene:
     """What facts are watched in: the engine, the zones of the mission, and the robot of a fact."""
@@ -77,6 +80,8 @@ class Scene:
     engine: Engine
     zones: Mapping[str, Zone]
     robot: str
+    tracks: dict[tuple[str, str], _Sampled] = field(default_factory=dict)
+    """What facts of a mission share: the progress of a robot along a track, which takes the longest to measure."""
 
     def present(self) -> Robot | None:
         """The robot, None while it is not in the world."""
@@ -377,19 +382,29 @@ def _reading(scene: Scene, variable: str, index: int, low: float, high: float) -
     return Watch(is_true, measure)
 
 
-def _progress(scene: Scene, track: str) -> tuple[Callable[[Robot], TrackProgress], TrackProgress]:
+def _progress(scene: Scene, track: str) -> _Sampled:
     """A function that samples the progress of the robot along a track as tests sample it, and that progress."""
+    key = scene.robot, track
+    if key not in scene.tracks:
+        scene.tracks[key] = _sampled(scene, track)
+    return scene.tracks[key]
+
+
+def _sampled(scene: Scene, track: str) -> _Sampled:
     try:
         line, _ = TrackLine.of(scene.engine.world.playground, track)
     except ValueError as error:
         raise FieldError("track", f"'{track}'", str(error)) from error
-    progress, ticks = TrackProgress(line), 0
+    progress, ticks, last_ns = TrackProgress(line), 0, -1
 
     def sampled(robot: Robot) -> TrackProgress:
-        nonlocal ticks
-        if ticks % EVERY == 0:
-            progress.add(scene.engine.now_ns / 1e9, robot.pose)
-        ticks += 1
+        nonlocal ticks, last_ns
+        now_ns = scene.engine.now_ns
+        if now_ns != last_ns:  # several facts ask in a tick
+            last_ns = now_ns
+            if ticks % EVERY == 0:
+                progress.add(now_ns / 1e9, robot.pose)
+            ticks += 1
         return progress
 
     return sampled, progress

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 from thymio_sim_ros.engine.engine import Engine
 from thymio_sim_ros.missions.conditions import Condition, Facts, names_in, read_condition
@@ -87,6 +88,11 @@ class _Checklist:
                 break
         return all(self._are_done)
 
+    @property
+    def done(self) -> tuple[bool, ...]:
+        """Whether each part is done."""
+        return tuple(self._are_done)
+
     def open_facts(self) -> tuple[str, ...]:
         """The facts of the parts that are not done; of the next part, if there is an order."""
         parts = [facts for facts, is_done in zip(self._facts, self._are_done, strict=True) if not is_done]
@@ -109,7 +115,9 @@ class Judge:
         self.robot = mission.robot or next(iter(engine.world.robots), "")
         """The robot that the pupil programs."""
         self._begin_ns = engine.now_ns
+        self._tracks: dict[tuple[str, str], Any] = {}
         self._watches: dict[str, Watch] = {name: self._watch(name) for name in mission.facts}
+        self._checks = [(name, watch.is_true) for name, watch in self._watches.items()]
         facts = list(mission.facts)
         check_zones(mission.zones, engine.world.playground)
         self._facts: Facts = dict.fromkeys(facts, False)
@@ -121,24 +129,37 @@ class Judge:
         self._happens = list(mission.happens)
         for index, happening in enumerate(self._happens):
             self._check_target(happening, f"happens[{index}]")
-        self.verdict = Verdict(State.RUNNING, 0.0, self._checklist.items(), (False,) * (1 + len(mission.stars)))
-        """What it says now."""
+        self._now_s = 0.0
+        self._last: Verdict | None = None
+        """The verdict of an end."""
         self.trace: list[Point] = []
         """Where the robot was, in m, every `TRACE_TICKS` ticks."""
         self._act(0.0)
 
     @property
+    def verdict(self) -> Verdict:
+        """What it says now."""
+        if self._last is not None:
+            return self._last
+        return Verdict(State.RUNNING, self._now_s, self._checklist.items(), (False,) * (1 + len(self._mission.stars)))
+
+    @property
     def is_over(self) -> bool:
         """Whether the mission has been passed or has failed."""
-        return self.verdict.state is not State.RUNNING
+        return self._last is not None
+
+    @property
+    def done(self) -> tuple[bool, ...]:
+        """Whether each line of the checklist is done."""
+        return self._checklist.done
 
     def tick(self) -> None:
         """Judge the tick that the engine has executed; does nothing when the mission is over."""
-        if self.is_over:
+        if self._last is not None:
             return
         now_ns = self._engine.now_ns - self._begin_ns
         now_s = now_ns / _SECOND_NS
-        facts = self._facts = {name: watch.is_true() for name, watch in self._watches.items()}
+        facts = self._facts = {name: is_true() for name, is_true in self._checks}
         self._note_place()
         extras = [extra is not None and extra.update(facts, now_s) for extra in self._extras]
         is_done = self._checklist.update(facts, now_s)
@@ -151,7 +172,7 @@ class Judge:
         elif now_s >= self._mission.time_s:
             self._end(State.FAILED, now_s, [])
         else:
-            self.verdict = Verdict(State.RUNNING, now_s, self._checklist.items(), self.verdict.stars)
+            self._now_s = now_s
             self._act(now_s)
 
     def measured(self) -> dict[str, Measured]:
@@ -169,7 +190,7 @@ class Judge:
             self._has_star(star, now_s, extra) for star, extra in zip(self._mission.stars, extras, strict=False)
         ] or [False] * len(self._mission.stars)
         stars = (state is State.PASSED, *further)
-        self.verdict = Verdict(state, now_s, self._checklist.items(), stars, broken)
+        self._last = Verdict(state, now_s, self._checklist.items(), stars, broken)
 
     def _has_star(self, star: Star, now_s: float, extra: bool) -> bool:
         if star.within_s is not None:
@@ -184,7 +205,7 @@ class Judge:
         key = f"facts.{name}"
         robot = self._check_robot(found.robot, join(key, "robot"))
         try:
-            return found.fact.watch(Scene(self._engine, self._mission.zones, robot))
+            return found.fact.watch(Scene(self._engine, self._mission.zones, robot, self._tracks))
         except FieldError as error:
             raise FieldError(join(key, error.key), error.found, error.expected) from error
 
@@ -216,6 +237,8 @@ class Judge:
             self._happens.pop(0)
 
     def _note_place(self) -> None:
+        if self._engine.tick % TRACE_TICKS:
+            return
         robot = self._engine.world.robots.get(self.robot)
-        if robot is not None and self._engine.tick % TRACE_TICKS == 0:
+        if robot is not None:
             self.trace.append((robot.pose.x_m, robot.pose.y_m))

@@ -58,14 +58,15 @@ class MissionError(ThymioSimError):
         self.expected = error.expected
 
 
-def load_mission(path: Path) -> Mission:
+def load_mission(path: Path, *, is_closed: bool = False) -> Mission:
     """Read a mission file, or a zip with one and all that it needs; paths in it start in its folder.
 
-    A zip is unpacked into a folder that is there until the process ends. Raises MissionError, OSError.
+    With `is_closed`, it may name no files outside of its folder, as that of a client. A zip is unpacked into a folder
+    that is there until the process ends. Raises MissionError, OSError.
     """
     data = path.read_bytes()
     try:
-        files = Files(path.parent)
+        files = Files(path.parent, is_closed=is_closed)
         if is_archive(data):
             inside = unpack(data)
             data, files = inside.read_bytes(), Files(inside.parent, is_closed=True)

@@ -41,7 +41,7 @@ export class EditorSession {
     });
     /** @type {Set<string>} */ this.watched = new Set(JSON.parse(storage.getItem(WATCHED_KEY) ?? "[]"));
     /** @type {import("./toolbox_file.js").Toolbox} what a teacher's file hides */
-    this.toolbox = readToolbox(storage.getItem(TOOLBOX_KEY) ?? "").toolbox ?? WHOLE;
+    this.toolbox = this.#keptToolbox();
     /** @type {import("../blockly/view/document.js").KeptBlocks | null} of the last view of blocks */
     this.blocks = null;
     /** @type {{ text: string, leftOut: readonly string[] } | null} the last file of another program */
@@ -90,6 +90,15 @@ export class EditorSession {
     this.toolbox = toolbox;
     if (toolbox === WHOLE) this.storage.removeItem(TOOLBOX_KEY);
     else trySetItem(this.storage, TOOLBOX_KEY, writeToolbox(toolbox));
+  }
+
+  #keptToolbox() {
+    return readToolbox(this.storage.getItem(TOOLBOX_KEY) ?? "").toolbox ?? WHOLE;
+  }
+
+  /** Limit the blocks for a while, as a mission does; null: as this browser has them. @param {import("./toolbox_file.js").Toolbox | null} toolbox */
+  limit(toolbox) {
+    this.toolbox = toolbox ?? this.#keptToolbox();
   }
 
   /** @param {number} step  +1 or -1 */

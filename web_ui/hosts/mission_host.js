@@ -83,6 +83,7 @@ export class MissionHost {
     const { mission } = state;
     if (mission === null) {
       this.#removeCard();
+      if (this.#name !== "") this.#context?.program.limit(null);
       this.#name = "";
       return;
     }
@@ -100,6 +101,7 @@ export class MissionHost {
       language: () => this.#language,
       commands: {
         program: (language) => void this.#program(language),
+        step: () => this.#step(),
         again: () => void this.#again(),
         next: (name) => void this.start(name),
         list: () => void this.openList(),
@@ -136,9 +138,21 @@ export class MissionHost {
     if (mission.robot in robots) context.store.dispatch({ type: "select", robot: mission.robot });
     context.scene.invalidate();
     if (language === NODE) return;
-    const text = this.progress.program(mission.name, language) ?? mission.programs[language]?.text ?? null;
+    const text = this.progress.program(mission.name, language) ?? mission.programs[language] ?? null;
     this.#document = ""; // until the program is open: what is written now belongs to another one
-    this.#document = await context.program.openAs(language, missionText(mission, context.language, "title"), text);
+    const { toolbox } = mission;
+    const isLimited = toolbox.hide.length > 0 || toolbox.modes !== null;
+    const title = missionText(mission, context.language, "title");
+    this.#document = await context.program.openAs(language, title, text, isLimited ? toolbox : null);
+  }
+
+  /** The next step of the solution in words; null: the program has all of it. */
+  async #step() {
+    const { store, program, language } = /** @type {Context} */ (this.#context);
+    const kind = this.#language ?? "";
+    const solution = store.state.mission?.solutions[kind];
+    if (this.#module === null || solution === undefined) return null;
+    return this.#module.nextStep({ kind, solution, own: kind === NODE ? "" : program.text, language });
   }
 
   /** Keep what the pupil has written. @param {string} document @param {string} text */

@@ -187,13 +187,26 @@ export class ProgramHost {
    * @param {string} language   one of a mission
    * @param {string} title
    * @param {string | null} text   null: empty
+   * @param {import("../editor/toolbox_file.js").Toolbox | null} [toolbox]   blocks that are hidden until `limit(null)`
    */
-  async openAs(language, title, text) {
+  async openAs(language, title, text, toolbox = null) {
     const { id, sample } = EDITORS[language] ?? { id: language, sample: undefined };
     const editor = LANGUAGES.find((each) => each.id === id);
     const tab = await this.#selected();
     if (editor === undefined || tab === null) return "";
+    this.limit(toolbox);
     return tab.commands.openAs(editor, title, text, sample);
+  }
+
+  /** Hide blocks while a mission is open; null: as the user has chosen. @param {import("../editor/toolbox_file.js").Toolbox | null} toolbox */
+  limit(toolbox) {
+    this.session?.limit(toolbox);
+    this.redraw();
+  }
+
+  /** The text of the open program; "": none is open. */
+  get text() {
+    return this.session?.workspace.current.text ?? "";
   }
 
   /** Open the tab with a program file. @param {File} file */

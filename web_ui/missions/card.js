@@ -2,7 +2,7 @@
 // comes next.
 
 import { attemptOf } from "../state/index.js";
-import { factText, hintsOf, missionText } from "../state/mission.js";
+import { factText, hintsOf, measuredText, missingText, missionText } from "../state/mission.js";
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { keepFocus } from "../ui/focus.js";
 import { icon } from "../ui/icons.js";
@@ -15,6 +15,7 @@ import { starRow } from "./stars.js";
 /**
  * @typedef {object} Commands   what the user does with the mission
  * @property {(language: string) => void} program   opens the pupil's program in a language
+ * @property {() => Promise<string | null>} step   the next step of the solution in words
  * @property {() => void} again
  * @property {(name: string) => void} next
  * @property {() => void} list
@@ -26,13 +27,15 @@ const WIDE_PX = 700;
 const NS_PER_S = 1e9;
 const NODE = "thymio-sim node my_node.py";
 
-/** The stars as a list of texts: that of the goal first. @param {Mission} mission @param {Translate} t */
-export function starTexts(mission, t) {
+/** The stars as a list of texts: that of the goal first. @param {Mission} mission @param {string} language @param {Translate} t */
+export function starTexts(mission, language, t) {
   return [
     t("star.goal"),
     ...mission.stars.map(
-      ({ text, within_s: seconds, length }) =>
-        text || (seconds !== null ? t("star.within", { seconds }) : length !== null ? t("star.length", { length }) : t("star.extra")),
+      ({ text, within_s: seconds, length }, at) =>
+        mission.translations[language]?.stars?.[at] ||
+        text ||
+        (seconds !== null ? t("star.within", { seconds }) : length !== null ? t("star.length", { length }) : t("star.extra")),
     ),
   ];
 }
@@ -46,8 +49,8 @@ export function outcome(mission, attempt, language, t) {
   /** @param {readonly string[]} facts */
   const texts = (facts) => facts.map((fact) => factText(mission, language, fact)).join(", ");
   if (attempt.reason === "facts") return t("failed.facts", { what: texts(attempt.broken) });
-  const missing = attempt.checklist.filter((_, at) => !attempt.done[at]).flat();
-  return t("failed.time", { what: texts([...new Set(missing)]) });
+  const missing = attempt.missing.map((fact) => missingText(mission, language, fact)).join(", ");
+  return t("failed.time", { what: missing });
 }
 
 export class MissionCard {
@@ -56,6 +59,7 @@ export class MissionCard {
   /** @type {boolean | null} null: by the room that there is */ #folded = null;
   /** @type {boolean | null} null: open until a try runs */ #isTaskOpen = null;
   #hints = 0;
+  /** The next step, in words. */ #step = "";
   #name = "";
   #state = "";
 
@@ -110,6 +114,7 @@ export class MissionCard {
     if (mission.name !== this.#name) {
       this.#name = mission.name;
       this.#hints = 0;
+      this.#step = "";
       this.#folded = null;
     }
     if (attempt !== null && attempt.state !== this.#state) {
@@ -120,11 +125,21 @@ export class MissionCard {
     const seconds = attempt?.state === "running" ? state.timeNs / NS_PER_S : (attempt?.at_s ?? 0);
     setText(this.time, attempt === null || attempt.state === "waiting" ? "" : this.t("time", { now: Math.floor(seconds), all: mission.time_s }));
     this.#fold(attempt);
-    const key = JSON.stringify([mission.name, attempt, this.language(), this.#hints, state.connection, this.context.language]);
+    this.#showValues(attempt);
+    const { measured, at_s: _at, ...reached } = attempt ?? { measured: {}, at_s: 0 };
+    const key = JSON.stringify([mission.name, reached, Object.keys(measured), this.language(), this.#step, this.#hints, state.connection, this.context.language]);
     if (key === this.#key) return;
     this.#key = key;
     this.#show(mission, attempt);
     this.#say(mission, attempt);
+  }
+
+  /** Update the quantities only. @param {Try | null} attempt */
+  #showValues(attempt) {
+    for (const element of this.body.querySelectorAll("[data-fact]")) {
+      const { fact } = /** @type {HTMLElement} */ (element).dataset;
+      setText(element, measuredText(attempt, fact ?? "", this.context.language));
+    }
   }
 
   /** @param {Try | null} attempt */
@@ -258,16 +273,23 @@ export class MissionCard {
         "li",
         { class: isDone ? "mission-done" : "" },
         h("span", { class: "mission-box" }, ...(isDone ? [icon("check", { small: true })] : [])),
-        h("span", {}, facts.map((fact) => factText(mission, this.context.language, fact)).join(", ")),
+        h("span", {}, facts.map((fact) => factText(mission, this.context.language, fact)).join(", "), ...this.#values(attempt, facts)),
         h("span", { class: "vh" }, t(isDone ? "line.done" : "line.open")),
       );
     });
     return h("div", {}, h("h3", { class: "cap" }, t("checklist")), h("ul", { class: "mission-checklist" }, ...lines));
   }
 
+  /** What the robot has reached of a quantity, beside its goal. @param {Try | null} attempt @param {readonly string[]} facts */
+  #values(attempt, facts) {
+    return facts
+      .filter((fact) => measuredText(attempt, fact, this.context.language) !== "")
+      .map((fact) => h("b", { class: "mission-value", "data-fact": fact }, measuredText(attempt, fact, this.context.language)));
+  }
+
   /** @param {Mission} mission @param {Try | null} attempt */
   #stars(mission, attempt) {
-    const texts = starTexts(mission, this.t);
+    const texts = starTexts(mission, this.context.language, this.t);
     return h(
       "ul",
       { class: "mission-star-list", "aria-label": this.t("stars.title") },
@@ -279,7 +301,8 @@ export class MissionCard {
   #hintList(mission) {
     const { t } = this;
     const hints = hintsOf(mission, this.context.language);
-    if (hints.length === 0) return [];
+    const solution = mission.solutions[this.language() ?? ""];
+    if (hints.length === 0 && solution === undefined) return [];
     const shown = hints.slice(0, this.#hints);
     const button = h(
       "button",
@@ -301,9 +324,21 @@ export class MissionCard {
         "div",
         { class: "mission-hints" },
         h("ol", {}, ...shown.map((hint) => h("li", {}, hint))),
-        ...(this.#hints < hints.length ? [button] : []),
+        ...(this.#step === "" ? [] : [h("p", { class: "mission-step note-box" }, this.#step)]),
+        h("div", { class: "mission-row" }, ...(this.#hints < hints.length ? [button] : []), ...(solution === undefined ? [] : [this.#stepButton()])),
       ),
     ];
+  }
+
+  #stepButton() {
+    const { t } = this;
+    const show = async () => {
+      const next = await this.commands.step();
+      this.#step = next === null ? t("step.none") : t("step.next", { what: next });
+      this.context.announce(this.#step);
+      this.context.scene.invalidate();
+    };
+    return h("button", { type: "button", class: "btn", "data-mission-do": "step", onclick: () => void show() }, icon("eye", { small: true }), t("step"));
   }
 
   /** Tell screen readers what has changed. @param {Mission} mission @param {Try | null} attempt */

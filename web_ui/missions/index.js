@@ -6,6 +6,7 @@ import missionTexts from "../i18n/missions.texts.js";
 import "./missions.css";
 
 export { MissionCard } from "./card.js";
+export { nextStep } from "./next_step.js";
 export { fetchMissions, openList } from "./list.js";
 
 /** @param {string} language */

@@ -3,23 +3,25 @@
 import { MARKER } from "./markers.js";
 
 /** @typedef {import("./markers.js").Marker} Marker */
-/** @typedef {{ title: string, story: string, hints: readonly string[], facts: Readonly<Record<string, string>> }} Texts */
+/** @typedef {Readonly<Record<string, string>>} Names */
+/** @typedef {{ title: string, story: string, hints: readonly string[], facts: Names, missing: Names }} Texts */
 /** @typedef {{ kind: string, x_m: number, y_m: number, size_x_m?: number, size_y_m?: number, radius_m?: number, yaw_rad?: number }} Zone */
 /** @typedef {{ text: string, within_s: number | null, length: number | null }} Star   beyond that of the goal */
 /**
  * @typedef {Texts & { name: string, robot: string, languages: readonly string[], time_s: number, next: string,
  *   stars: readonly Star[], zones: Readonly<Record<string, Zone>>,
- *   programs: Readonly<Record<string, { name: string, text: string }>>,
- *   translations: Readonly<Record<string, Texts>> }} Mission
+ *   programs: Names, solutions: Names, toolbox: { hide: readonly string[], modes: readonly string[] | null },
+ *   translations: Readonly<Record<string, Texts & { stars: readonly string[] }>> }} Mission
  */
 /**
  * What the present try has reached: `done` has an entry for each line of `checklist`, whose facts it lists; `trace` is
- * the way in m, at the end.
+ * the way in m, at the end; `measured` has value, goal and unit of facts that are quantities.
  *
  * @typedef {{ mission: string, tries: number, state: "waiting" | "running" | "passed" | "failed",
  *   reason: "" | "facts" | "time" | "hand", at_s: number, trouble: "" | "fallen" | "stuck" | "idle",
  *   checklist: readonly (readonly string[])[], done: readonly boolean[], stars: readonly boolean[],
- *   broken: readonly string[], trace: readonly (readonly [number, number])[] }} Try
+ *   broken: readonly string[], missing: readonly string[],
+ *   measured: Readonly<Record<string, readonly [number, number, string]>>, trace: readonly (readonly [number, number])[] }} Try
  */
 
 /** Zones and trace lie over floor and paint, the trace over the zones. */
@@ -40,6 +42,23 @@ export function missionText(mission, language, key) {
 /** The text of a fact in a language. @param {Mission} mission @param {string} language @param {string} fact */
 export function factText(mission, language, fact) {
   return mission.translations[language]?.facts?.[fact] || mission.facts[fact] || fact;
+}
+
+/** What is said of a fact that was not reached. @param {Mission} mission @param {string} language @param {string} fact */
+export function missingText(mission, language, fact) {
+  const translated = mission.translations[language];
+  return translated?.missing?.[fact] || translated?.facts?.[fact] || mission.missing[fact] || factText(mission, language, fact);
+}
+
+/** How far a fact is, such as "0.32 of 0.5 m"; "": it is no quantity. @param {Try | null} attempt @param {string} fact @param {string} language */
+export function measuredText(attempt, fact, language) {
+  const found = attempt?.measured?.[fact];
+  if (found === undefined) return "";
+  const [value, goal, unit] = found;
+  const digits = Number.isInteger(goal) && Math.abs(goal) >= 10 ? 0 : 2;
+  /** @param {number} number */
+  const shown = (number) => number.toLocaleString(language, { maximumFractionDigits: digits });
+  return `${shown(value)} / ${shown(goal)}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
 }
 
 /** The hints in a language; those that are not translated are in the mission's own. @param {Mission} mission @param {string} language */

@@ -7,7 +7,9 @@ import binascii
 import json
 import re
 import tempfile
+import time
 import urllib.parse
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +17,7 @@ from typing import Any
 from rclpy.node import Node
 from std_msgs.msg import String
 
+from thymio_sim_ros.device.programs.program import ProgramError, ThymioProgram
 from thymio_sim_ros.engine.inputs import Controlled
 from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.files.resources import ResourceError
@@ -23,6 +26,7 @@ from thymio_sim_ros.missions.description import described, progress
 from thymio_sim_ros.missions.documents import mission_after
 from thymio_sim_ros.missions.live import LiveMission
 from thymio_sim_ros.missions.shipped import find_mission
+from thymio_sim_ros.missions.trial import programs_of_others
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
@@ -30,22 +34,25 @@ from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
 from thymio_sim_ros.ros.simulator.world_topics import TOPICS
 from thymio_sim_ros.sim.model.fields import FieldError
 from thymio_sim_ros.sim.playground import writer
-from thymio_sim_ros.sim.playground.reader import PlaygroundError
+from thymio_sim_ros.sim.playground.reader import Playground, PlaygroundError
 
 __all__ = ["MissionEndpoints"]
 
 _UPLOAD = re.compile(r"data:[^;,]*(?:;name=(?P<name>[^;,]*))?;base64,(?P<content>.*)", re.DOTALL)
 _MISSION, _TRY = "~/_mission", "~/_mission/try"
+MEASURED_GAP_NS = 250_000_000
+"""Shortest wall time between two messages about quantities, such as the way that the robot has driven."""
 _FILE = "the file of a mission as data:;name=my.json;base64,..."
 
 
 @dataclass(frozen=True, slots=True)
 class _Opened:
-    """A mission, the name of its file, and what pages get of it."""
+    """A mission, the name of its file, what pages get of it, and the programs of its other robots."""
 
     file: str
     mission: Mission
     content: dict[str, Any]
+    programs: Mapping[str, ThymioProgram]
 
 
 class MissionEndpoints:
@@ -66,6 +73,8 @@ class MissionEndpoints:
         self._name = ""
         self._shown: tuple[Any, ...] = ()
         """What the last message about the try was made of."""
+        self._published_ns = 0
+        """Wall time of that message."""
         runner.observer = self
         self._publish_mission(None)
         self._publish_try()
@@ -80,7 +89,7 @@ class MissionEndpoints:
             raise ValueError("a run is replayed: load a playground first")
         try:
             opened = self._runner.run_beside(lambda: _open(name, value))
-        except (ResourceError, PlaygroundError, OSError) as error:
+        except (ResourceError, PlaygroundError, ProgramError, OSError) as error:
             raise ValueError(str(error)) from error
         mission = opened.mission
         if problem := self._parameters.load_playground(mission.playground):
@@ -91,7 +100,7 @@ class MissionEndpoints:
         except FieldError as error:
             raise MissionError(opened.file, error) from error
         self._name = Path(opened.file).stem if value else name
-        self._stop_programs()
+        self._load_programs(opened.programs)
         robot = self._robots.names[self.live.robot].name
         following = Path(mission.next).stem if mission.next else mission_after(self._name)
         self._publish_mission(opened.content | {"name": self._name, "robot": robot, "next": following})
@@ -129,21 +138,27 @@ class MissionEndpoints:
         self.live = LiveMission(live.mission, engine, self._runner.reset)
         self._publish_try()
 
-    def _stop_programs(self) -> None:
-        """The programs before must not drive in this world."""
+    def _load_programs(self, programs: Mapping[str, ThymioProgram]) -> None:
+        """Load the programs of other robots, which begin with a try; those that ran before must not drive here."""
         engine = self._runner.engine
         for robot in engine.hosts:
+            if robot in programs:
+                engine.load(robot, programs[robot])
             engine.apply(Controlled(robot, "stop"))
         self._runner.on_reset()
 
     def _publish_if_changed(self) -> None:
-        if self.live is not None and _seen(self.live) != self._shown:
+        if self.live is None:
+            return
+        wall_ns = time.monotonic_ns()
+        is_due = self.live.is_running and wall_ns - self._published_ns >= MEASURED_GAP_NS
+        if _seen(self.live) != self._shown or (is_due and self._publishers[_TRY].get_subscription_count()):
             self._publish_try()
 
     def _publish_try(self) -> None:
         shown = None
         if self.live is not None:
-            self._shown = _seen(self.live)
+            self._shown, self._published_ns = _seen(self.live), time.monotonic_ns()
             shown = progress(self.live) | {"mission": self._name}
         self._publishers[_TRY].publish(String(data=json.dumps(shown)))
 
@@ -152,9 +167,9 @@ class MissionEndpoints:
 
 
 def _seen(live: LiveMission) -> tuple[Any, ...]:
-    """What a message about a try is made of, but for the time."""
-    verdict = live.verdict
-    reached = () if verdict is None else (verdict.state, verdict.checklist)
+    """What a message about a try is made of, but for time and quantities."""
+    judge = live.judge
+    reached = () if judge is None else (judge.is_over, judge.done)
     return (live.tries, live.trouble, live.is_helped, *reached)
 
 
@@ -162,28 +177,24 @@ def _open(name: str, value: str) -> _Opened:
     if not value:
         path = find_mission(name)
         mission = load_mission(path)
-        return _Opened(path.name, mission, described(mission))
+        return _opened(path, mission, load_playground(mission.playground)[1])
     with tempfile.TemporaryDirectory(prefix="mission-") as folder:
         path = _unpacked(name, value, Path(folder))
         try:
-            mission = load_mission(path)
-            _check_files(mission, path.parent)
+            mission = load_mission(path, is_closed=True)
         except MissionError as error:
             raise MissionError(path.name, FieldError(error.key, error.found, error.expected)) from error
-        except FieldError as error:
-            raise MissionError(path.name, error) from error
-        playground = mission.playground
-        if Path(playground).suffix:  # a file of this folder, which the parameter of the simulator shall not name
-            playground = writer.dumps(load_playground(playground)[1])
-        return _Opened(path.name, replace(mission, playground=playground), described(mission))
+        _, playground = load_playground(mission.playground)
+        if Path(mission.playground).suffix:  # a file of this folder, which the simulator's parameter shall not name
+            mission = replace(mission, playground=writer.dumps(playground))
+        return _opened(path, mission, playground)
 
 
-def _check_files(mission: Mission, folder: Path) -> None:
-    """Raise FieldError if a mission of a client names a file of this computer."""
-    named = {"playground": mission.playground} | {f"programs.{one}": at for one, at in mission.programs.items()}
-    for key, file in named.items():
-        if Path(file).suffix and not Path(file).resolve().is_relative_to(folder.resolve()):
-            raise FieldError(key, f"'{file}'", "a file of the mission, or the name of a shipped playground")
+def _opened(path: Path, mission: Mission, playground: Playground) -> _Opened:
+    try:
+        return _Opened(path.name, mission, described(mission), programs_of_others(mission, playground))
+    except FieldError as error:
+        raise MissionError(path.name, error) from error
 
 
 def _unpacked(name: str, value: str, folder: Path) -> Path:

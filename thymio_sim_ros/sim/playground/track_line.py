@@ -36,7 +36,11 @@ class TrackLine:
         ring = [*points, points[0]] if closed else list(points)
         pieces = [(a, b) for a, b in itertools.pairwise(ring) if a != b]
         begins = itertools.accumulate((math.dist(a, b) for a, b in pieces), initial=0.0)
-        self._pieces = [(a, b, begin) for (a, b), begin in zip(pieces, begins, strict=False)]
+        self._pieces = [
+            (*a, b[0] - a[0], b[1] - a[1], math.hypot(b[0] - a[0], b[1] - a[1]), begin)
+            for (a, b), begin in zip(pieces, begins, strict=False)
+        ]
+        """Begin, direction and length of each piece, and how far along the line it begins."""
         self.length_m = math.fsum(math.dist(a, b) for a, b in pieces)
 
     @classmethod
@@ -51,11 +55,11 @@ class TrackLine:
 
     def distance(self, point: Point) -> float:
         """Distance in m from a point."""
-        return min(math.dist(point, on) for on, _ in self._nearest(point))
+        return min(distance for distance, _ in self._nearest(point))
 
     def locate(self, point: Point, last_m: float | None = None) -> tuple[float, float]:
         """Distance in m from a point, and how far along the line that is, near where it was last."""
-        found = [(math.dist(point, on), along) for on, along in self._nearest(point)]
+        found = self._nearest(point)
         nearest = min(found)
         if last_m is None or abs(self.offset(last_m, nearest[1])) < _MAX_JUMP_M:
             return nearest
@@ -66,15 +70,15 @@ class TrackLine:
         """The way from a place on the line to another, the shorter one where it is closed."""
         return math.remainder(to_m - from_m, self.length_m) if self.closed else to_m - from_m
 
-    def _nearest(self, point: Point) -> list[tuple[Point, float]]:
-        """For each piece its point that is nearest, and how far along the line that is."""
+    def _nearest(self, point: Point) -> list[tuple[float, float]]:
+        """For each piece the distance of its point that is nearest, and how far along the line that is."""
         x, y = point
         found = []
-        for (ax, ay), (bx, by), begin in self._pieces:
-            dx, dy = bx - ax, by - ay
-            length = math.hypot(dx, dy)
-            along = min(length, max(0.0, ((x - ax) * dx + (y - ay) * dy) / length))
-            found.append(((ax + dx * along / length, ay + dy * along / length), begin + along))
+        for ax, ay, dx, dy, length, begin in self._pieces:
+            along = ((x - ax) * dx + (y - ay) * dy) / length
+            along = 0.0 if along < 0.0 else min(along, length)
+            on = ax + dx * along / length, ay + dy * along / length
+            found.append((math.dist(point, on), begin + along))
         return found
 
 
