@@ -199,7 +199,7 @@ def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: Ru
     )
     asked(group.bridge_of(ADA), ms.SetParameters(changes, "set"))
     group.request("message", {"pupils": ["ada"], "text": "still there"})
-    works = {"ada/program.aesl": PROGRAM, "ada/draft.aesl": DRAFT, "missing.txt": "Ben\n"}
+    works = {"Ada/": "", "Ada/program.aesl": PROGRAM, "Ada/draft.aesl": DRAFT, "Ben/": ""}
     group.until("ada", lambda _one: zipped(group) == works)
     plan = group.until("ada", lambda one: one["plan"] != group.pupil("ben")["plan"])["plan"]
     before = group.pupil("ada")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 import io
 import json
 import zipfile
@@ -23,6 +24,14 @@ OPTIONS = SuiteOptions("desk", "welcome")
 URL = "https://school.example/thymio/"
 PLACE = ClassAddress("127.0.0.1", 8100, TrustedProxies(["127.0.0.1"]))
 PUPIL = Visitor("192.0.2.7", "school.example", "https", "/thymio", is_proxied=True)
+
+
+def encoded(text: str) -> str:
+    """A file in base64, as the page sends it."""
+    return base64.b64encode(text.encode()).decode()
+
+
+GIVEN = {"kind": "program", "name": "bus.aesl", "content": encoded("onevent prox\n"), "due": "", "pupils": None}
 
 
 class Teacher:
@@ -76,21 +85,22 @@ def test_programs_are_collected_by_pupil(teacher: Teacher) -> None:
     assert json.loads(missing.body) == ["Zoë"]
     with zipfile.ZipFile(io.BytesIO(packed.body)) as archive:
         assert {name: archive.read(name).decode() for name in archive.namelist()} == {
-            "ada/program.aesl": "onevent prox\n",
-            "ben/program.aesl": "onevent tap\n",
-            "ben/draft.aesl": "onevent tap\nvar",
-            "eve/draft.aesl": "onevent",
-            "missing.txt": "Zoë\n",
+            "Ada/": "",
+            "Ada/program.aesl": "onevent prox\n",
+            "Ben/": "",
+            "Ben/program.aesl": "onevent tap\n",
+            "Ben/draft.aesl": "onevent tap\nvar",
+            "Eve/": "",
+            "Eve/draft.aesl": "onevent",
+            "Zoë/": "",
         }
 
 
 def test_no_one_is_missing_when_all_have_a_program(teacher: Teacher) -> None:
     for place in teacher.places:
         teacher.folder.keep(place, Work("onevent prox\n"))
-    packed, missing = teacher.ask(("GET", "programs.zip", None), ("GET", "missing", None))
+    [missing] = teacher.ask(("GET", "missing", None))
     assert json.loads(missing.body) == []
-    with zipfile.ZipFile(io.BytesIO(packed.body)) as archive:
-        assert "missing.txt" not in archive.namelist()
 
 
 def test_the_sheet_has_a_link_for_each_pupil(teacher: Teacher) -> None:
@@ -136,6 +146,21 @@ def test_plans_are_those_of_pupils(teacher: Teacher) -> None:
         ("POST", "pause", {"pupils": "ada", "paused": True}, 400),
         ("POST", "pause", {"paused": 1}, 400),
         ("POST", "show", {"pupil": ["ada"]}, 400),
+        ("POST", "lower", {"pupils": ["mia"]}, 400),
+        ("POST", "take_back", {"handout": "bus"}, 400),
+        ("GET", "handouts/bus", None, 404),
+        ("POST", "handout", GIVEN | {"kind": "worksheet"}, 400),
+        ("POST", "handout", GIVEN | {"name": None}, 400),
+        ("POST", "handout", GIVEN | {"content": "?"}, 400),
+        ("POST", "handout", GIVEN | {"content": ""}, 400),
+        ("POST", "handout", GIVEN | {"content": encoded("<network><node")}, 400),
+        ("POST", "handout", GIVEN | {"kind": "playground"}, 400),
+        ("POST", "handout", GIVEN | {"kind": "mission"}, 400),
+        ("POST", "handout", GIVEN | {"due": "tomorrow"}, 400),
+        ("POST", "handout", GIVEN | {"due": "2026-12-01"}, 400),
+        ("POST", "handout", GIVEN | {"due": None}, 400),
+        ("POST", "handout", GIVEN | {"solution_of": "bus"}, 400),
+        ("POST", "handout", GIVEN | {"pupils": ["mia"]}, 400),
     ],
 )
 def test_wrong_requests_are_refused(teacher: Teacher, method: str, name: str, fields: Any, status: int) -> None:

@@ -288,3 +288,22 @@ def test_names_cannot_be_chosen_in_a_class_with_links_only(tmp_path: Path, has_r
             assert answer.status == status
 
     play(tmp_path, scenario, has_room=has_room)
+
+
+def test_a_hand_out_needs_the_token_of_its_pupil(tmp_path: Path) -> None:
+    async def scenario(group: ServedClass, suite: FakeSuite, client: aiohttp.ClientSession) -> None:
+        handout = group.classroom.handouts.add("program", "bus.aesl", b"onevent prox", ["ada"])
+        place = group.url(f"p/ada/class/handouts/{handout.id}")
+        ada, ben = (group.classroom.seats[pupil].place for pupil in ("ada", "ben"))
+        for token, status in ((ada.token, 200), (ada.read_only_token, 401), (ben.token, 401), ("", 401)):
+            async with client.get(place, headers={"Authorization": f"Bearer {token}"}) as answer:
+                assert answer.status == status
+        async with client.get(place, headers={"Authorization": f"Bearer {ada.token}"}) as answer:
+            assert await answer.json() == {"kind": "program", "name": "bus.aesl", "content": "b25ldmVudCBwcm94"}
+        for number in ("nothing", "..%2F..%2Fclass.json", ""):
+            other = group.url(f"p/ada/class/handouts/{number}")
+            async with client.get(other, headers={"Authorization": f"Bearer {ada.token}"}) as answer:
+                assert answer.status == 404
+        assert suite.requests == []
+
+    play(tmp_path, scenario)

@@ -10,6 +10,7 @@ import pytest
 from tests.classroom.test_requests import OPTIONS
 from thymio_sim_ros.classroom.bridge_client import BridgeClient
 from thymio_sim_ros.classroom.folder import ClassFolder
+from thymio_sim_ros.classroom.handouts import Handouts
 from thymio_sim_ros.classroom.seat import Seat
 from thymio_sim_ros.classroom.suite_state import SuiteState, SuiteStateError, read_overview, read_state
 
@@ -47,9 +48,9 @@ def test_another_overview_is_rejected(changed: dict[str, object]) -> None:
 def test_what_a_pupil_publishes_does_not_break_the_page_of_the_teacher(tmp_path: Path, text: str) -> None:
     folder = ClassFolder(tmp_path)
     (place,) = folder.places(["Ada"])
-    seat = Seat(place, OPTIONS, folder)
-    seat._client = client = BridgeClient("ws://localhost:1/", "token", seat._on_parameter)
-    for topic in ("/simulator/_state", "/simulator/_overview"):
+    seat = Seat(place, OPTIONS, folder, Handouts(folder.handouts))
+    seat._client = client = BridgeClient("ws://localhost:1/", "token", seat._on_parameter, seat._on_try)
+    for topic in ("/simulator/_state", "/simulator/_overview", "/simulator/_mission", "/simulator/_mission/try"):
         payload = text.encode() + b"\0"
         client._read(topic, b"\0\1\0\0" + len(payload).to_bytes(4, "little") + payload)
     summary = seat.summary()

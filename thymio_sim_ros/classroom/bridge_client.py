@@ -18,16 +18,26 @@ from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import CDR, JSON, SUBPROTOCOLS
 from thymio_sim_ros.bridge.protocol.errors import FrameError
 from thymio_sim_ros.classroom.cdr import CdrError, read_diagnostic, read_string
-from thymio_sim_ros.classroom.suite_state import Overview, SuiteState, SuiteStateError, read_overview, read_state
+from thymio_sim_ros.classroom.suite_state import (
+    MissionTry,
+    Overview,
+    SuiteState,
+    SuiteStateError,
+    read_overview,
+    read_state,
+    read_try,
+)
 
-__all__ = ["DRAFT", "PLAYGROUND", "PROGRAM_NAME", "SOURCE", "BridgeClient", "SuiteStatus"]
+__all__ = ["DRAFT", "PLAYGROUND", "PROGRAM_NAME", "RAISED_HAND", "SOURCE", "BridgeClient", "SuiteStatus"]
 
 _STATE, _OVERVIEW, _PROGRAM = "/simulator/_state", "/simulator/_overview", "/_aseba/status"
+_MISSION, _TRY = "/simulator/_mission", "/simulator/_mission/try"
 _PAUSE = "/simulator/pause"
 PROGRAM_NAME, SOURCE = "/aseba_runtime.script.name", "/aseba_runtime.script.source"
-PLAYGROUND, DRAFT = "/simulator.playground", "/web_ui.draft"
+PLAYGROUND, DRAFT, RAISED_HAND = "/simulator.playground", "/web_ui.draft", "/web_ui.raised_hand"
 _PAGE = "/web_ui."
-_WATCHED = (PROGRAM_NAME, SOURCE, PLAYGROUND, DRAFT)
+_WATCHED = (PROGRAM_NAME, SOURCE, PLAYGROUND, DRAFT, RAISED_HAND)
+_FOLLOWED = (_STATE, _MISSION, _TRY)
 _PING_S, _PONG_S = 10.0, 30.0
 """Time between pings, and until a suite without an answer counts as broken; long, for a machine under load."""
 
@@ -40,14 +50,22 @@ class SuiteStatus:
     overview: Overview = field(default_factory=dict)
     programs: dict[str, dict[str, str]] = field(default_factory=dict)
     """Topic of a robot's program → its values."""
+    attempt: MissionTry | None = None
+    """The try of the mission that is open."""
 
 
 class BridgeClient:
     """One connection; `run` serves it until it ends. Only for the thread of its event loop."""
 
-    def __init__(self, url: str, token: str, on_parameter: Callable[[str, str], None]) -> None:
-        """`on_parameter` gets name and text of the watched parameters, which are the constants of this module."""
-        self._url, self._token, self._on_parameter = url, token, on_parameter
+    def __init__(
+        self,
+        url: str,
+        token: str,
+        on_parameter: Callable[[str, str | bool], None],
+        on_try: Callable[[MissionTry], None],
+    ) -> None:
+        """`on_parameter` gets name and value of the watched parameters, which are the constants of this module."""
+        self._url, self._token, self._on_parameter, self._on_try = url, token, on_parameter, on_try
         self._connection: ClientConnection | None = None
         self._channels: dict[str, int] = {}
         self._topics: dict[int, str] = {}
@@ -119,7 +137,7 @@ class BridgeClient:
             case ms.Advertise(channels=channels):
                 self._channels |= {channel.topic: channel.id for channel in channels if channel.encoding == CDR}
                 for channel in channels:
-                    if channel.topic == _STATE or channel.topic.endswith(_PROGRAM):
+                    if channel.topic in _FOLLOWED or channel.topic.endswith(_PROGRAM):
                         await self._subscribe(channel.topic)
                 await self._follow_overview()
             case ms.Unadvertise(channel_ids=numbers):
@@ -131,7 +149,7 @@ class BridgeClient:
                 self.has_changed.set()
             case ms.ParameterValues(parameters=parameters):
                 for parameter in parameters:
-                    if isinstance(parameter.value, str) and parameter.name in _WATCHED:
+                    if isinstance(parameter.value, str | bool) and parameter.name in _WATCHED:
                         self._on_parameter(parameter.name, parameter.value)
 
     async def _subscribe(self, topic: str) -> None:
@@ -157,6 +175,12 @@ class BridgeClient:
                 self.has_changed.set()
             elif topic == _OVERVIEW:
                 self.status.overview = read_overview(read_string(payload))
+            elif topic == _MISSION:
+                if read_string(payload) == "null":
+                    self.status.attempt = None
+            elif topic == _TRY:
+                self.status.attempt = read_try(read_string(payload))
+                self._on_try(self.status.attempt)
             elif topic:
                 self.status.programs[topic] = read_diagnostic(payload)
         except (CdrError, SuiteStateError):

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import asyncio
+import csv
 import io
 import os
 import zipfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from thymio_sim_ros.classroom.folder import ClassFolder, Place
+from thymio_sim_ros.classroom.handouts import Handout, Handouts
 from thymio_sim_ros.classroom.plan import plan_of
+from thymio_sim_ros.classroom.progress import Progress
+from thymio_sim_ros.classroom.pupils import archive_name
 from thymio_sim_ros.classroom.seat import Notice, Seat
 from thymio_sim_ros.classroom.suite_process import SuiteOptions
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.files.loading import load_playground
 
-__all__ = ["MAX_MESSAGE", "MISSING", "WATCHED_S", "Classroom"]
+__all__ = ["MAX_MESSAGE", "WATCHED_S", "Classroom"]
 
 WATCHED_S = 5.0
 """The teacher's page counts as open for this time after its last request."""
@@ -24,8 +28,6 @@ STARTS, STARTS_ROS = 4, 1
 """Suites that start at the same time for each core, on embedded graphs and with ROS 2: the first ones mostly wait."""
 MAX_MESSAGE = 500
 """Characters of a message."""
-MISSING = "missing.txt"
-"""The names of pupils without a program, in the zip with the programs."""
 _PLANS = 64
 """Plans of playgrounds that are kept."""
 
@@ -34,10 +36,12 @@ class Classroom:
     """The class while it runs. Only for the thread of the event loop."""
 
     def __init__(self, places: Sequence[Place], options: SuiteOptions, folder: ClassFolder) -> None:
+        """Read what was handed out. Raises ClassError and OSError for files of the folder that cannot be used."""
         at_once = STARTS if options.first_domain is None else STARTS_ROS
         starting = asyncio.Semaphore(at_once * (os.cpu_count() or 1))
         self.options, self.folder = options, folder
-        self.seats = {place.id: Seat(place, options, folder, starting) for place in places}
+        self.handouts = Handouts(folder.handouts)
+        self.seats = {place.id: Seat(place, options, folder, self.handouts, starting) for place in places}
         self._messages: dict[str, str] = {}
         self._shown: str | None = None
         self._plans: dict[str, dict[str, Any]] = {}
@@ -98,22 +102,67 @@ class Classroom:
         self._shown = shown
         await self._show_notices(self.seats)
 
-    def programs(self) -> bytes:
-        """A zip with a folder for each pupil: the program that ran last, a different text of the editor.
+    async def hand_out(self, handout: Handout) -> None:
+        """Show a hand-out, or that it was taken back, on the pages of its pupils."""
+        await asyncio.gather(*(self.seats[one].show_handouts() for one in handout.pupils if one in self.seats))
 
-        `missing.txt` has the names of those who have neither; without such pupils there is no such file.
+    async def open(self, pupil: str, handout: Handout) -> bytes:
+        """The content of a hand-out that a pupil opens, also one who has it by a link. Raises OSError."""
+        content = await asyncio.to_thread(self.handouts.content, handout)
+        await self.seats[pupil].open(self.handouts.give(handout, pupil))
+        return content
+
+    async def lower_hands(self, ids: Iterable[str]) -> None:
+        """Lower the hands that these pupils have raised."""
+        await asyncio.gather(*(self.seats[pupil].lower_hand() for pupil in ids))
+
+    def results(self) -> list[tuple[Handout, Seat, Progress]]:
+        """How far each pupil is with each hand-out that the pupil has."""
+        return [
+            (handout, seat, seat.progress.of(handout))
+            for handout in self.handouts.all()
+            for pupil, seat in self.seats.items()
+            if pupil in handout.pupils
+        ]
+
+    def table(self) -> str:
+        """The results as CSV."""
+        rows = io.StringIO()
+        writer = csv.writer(rows)
+        columns = "pupil,handout,kind,given,due,opened,tries,stars,passed,best_s,changed,late"
+        writer.writerow(columns.split(","))
+        for handout, seat, progress in self.results():
+            at = [progress.opened, progress.tries, progress.stars, progress.passed, progress.best_s, progress.changed]
+            late = "yes" if handout.is_late(progress.passed or progress.changed) else ""
+            writer.writerow([seat.place.name, handout.name, handout.kind, handout.given, handout.due, *at, late])
+        return rows.getvalue()
+
+    def programs(self) -> bytes:
+        """A zip with a folder for each pupil, which `thymio-sim grade` reads.
+
+        It has the program that ran last, a different text of the editor, and the programs for hand-outs under the names
+        of these. The folder of a pupil without any of it is empty.
         """
         packed = io.BytesIO()
+        folders: list[str] = []
         with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
             for seat in self.seats.values():
-                work = self.folder.work(seat.place)
-                if work.program is not None:
-                    archive.writestr(f"{seat.place.id}/program.aesl", work.program)
-                if work.draft is not None and work.draft != work.program:
-                    archive.writestr(f"{seat.place.id}/draft.aesl", work.draft)
-            if missing := self.missing():
-                archive.writestr(MISSING, "\n".join([*missing, ""]))
+                folders.append(archive_name(seat.place.name, folders))
+                archive.mkdir(folders[-1])
+                for name, text in self._files(seat):
+                    archive.writestr(f"{folders[-1]}/{name}.aesl", text)
         return packed.getvalue()
+
+    def _files(self, seat: Seat) -> Iterator[tuple[str, str]]:
+        """The names and texts of what a pupil has written."""
+        work = self.folder.work(seat.place)
+        if work.program is not None:
+            yield "program", work.program
+        if work.draft is not None and work.draft != work.program:
+            yield "draft", work.draft
+        for handout in self.handouts.all():
+            if (text := seat.progress.program(handout)) is not None:
+                yield handout.stem, text
 
     def missing(self) -> list[str]:
         """The names of the pupils who have neither run a program nor written one."""

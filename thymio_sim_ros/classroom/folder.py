@@ -1,7 +1,7 @@
 """The folder of a class: tokens and places in `class.json`, and the work of each pupil in `pupils/<name>/`.
 
-`program.aesl` is the last own program that was run, `draft.aesl` what the editor had last, `work.json` the rest. Tokens
-are secrets: the folder can be read by its owner only.
+`program.aesl` is the last own program that was run, `draft.aesl` what the editor had last, `work.json` the rest;
+`handouts/` has what the teacher has handed out. Tokens are secrets: the folder can be read by its owner only.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from thymio_sim_ros.access.tokens import TOKEN, new_token
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.pupils import folder_name
 
-__all__ = ["ClassFolder", "Place", "Work"]
+__all__ = ["ClassFolder", "Place", "Work", "read_text", "write_text"]
 
 _FILE = "class.json"
 _PROGRAM, _DRAFT, _WORK, _PARAMETERS = "program.aesl", "draft.aesl", "work.json", "parameters.yaml"
@@ -104,43 +104,52 @@ class ClassFolder:
         folder.mkdir(parents=True, exist_ok=True)
         return folder
 
+    @property
+    def handouts(self) -> Path:
+        """The folder with what the teacher has handed out, which exists."""
+        folder = self._path / "handouts"
+        folder.mkdir(exist_ok=True)
+        return folder
+
     def work(self, place: Place) -> Work:
         """The work of a pupil. Raises OSError."""
         rest: Any = None
         with contextlib.suppress(ValueError, RecursionError):  # damaged: the programs are files of their own
-            rest = json.loads(_read(self.pupil(place) / _WORK) or "{}")
+            rest = json.loads(read_text(self.pupil(place) / _WORK) or "{}")
         known = {name: text for name in _REST if isinstance(rest, dict) and isinstance(text := rest.get(name), str)}
-        return Work(_read(self.pupil(place) / _PROGRAM), draft=_read(self.pupil(place) / _DRAFT), **known)
+        return Work(read_text(self.pupil(place) / _PROGRAM), draft=read_text(self.pupil(place) / _DRAFT), **known)
 
     def keep(self, place: Place, work: Work) -> None:
         """Write what a pupil has made; a crash in between leaves each file as it was or as it is. Raises OSError."""
         rest = json.dumps({name: getattr(work, name) for name in _REST}, indent=2) + "\n"
         for name, text in ((_PROGRAM, work.program), (_DRAFT, work.draft), (_WORK, rest)):
             path = self.pupil(place) / name
-            if text is not None and text != _read(path):
-                _write(path, text)
+            if text is not None and text != read_text(path):
+                write_text(path, text)
 
     def write_parameters(self, place: Place, parameters: Mapping[str, Mapping[str, str]]) -> Path:
         """Write a file of ROS parameters, by node and name, and return its path. Raises OSError."""
         path = self.pupil(place) / _PARAMETERS
         nodes = {node: {"ros__parameters": dict(values)} for node, values in parameters.items() if values}
-        _write(path, json.dumps(nodes, ensure_ascii=False))  # YAML has JSON's strings, but no pairs of surrogates
+        write_text(path, json.dumps(nodes, ensure_ascii=False))  # YAML has JSON's strings, but no pairs of surrogates
         return path
 
     def _save(self) -> None:
         pupils = [asdict(place) for place in sorted(self._places.values(), key=lambda place: place.number)]
         known = {"teacher_token": self.teacher_token, "room_code": self.room_code, "pupils": pupils}
-        _write(self._file, json.dumps(known, indent=2) + "\n")
+        write_text(self._file, json.dumps(known, indent=2) + "\n")
 
 
-def _read(path: Path) -> str | None:
+def read_text(path: Path) -> str | None:
+    """A file of the class; None if it does not exist. Raises OSError."""
     try:
         return path.read_bytes().decode("utf-8", "replace")
     except FileNotFoundError:
         return None
 
 
-def _write(path: Path, text: str) -> None:
+def write_text(path: Path, text: str) -> None:
+    """Write a file as a whole, for the owner only. Raises OSError."""
     write_file(str(path), text.encode("utf-8", "replace"), mode=0o600)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from thymio_sim_ros.classroom.errors import ClassError
 
-__all__ = ["MAX_PUPILS", "folder_name", "read_pupils"]
+__all__ = ["MAX_PUPILS", "archive_name", "folder_name", "read_pupils"]
 
 MAX_PUPILS = 100
 """Pupils of a class; each needs a ROS domain below 233, and memory."""
@@ -67,6 +67,19 @@ def folder_name(name: str, taken: Sequence[str] = ()) -> str:
     while unused in taken:
         number += 1
         unused = f"{base}-{number}"
+    return unused
+
+
+def archive_name(name: str, taken: Sequence[str] = ()) -> str:
+    """A name for a folder in a zip that a person reads: the pupil's, without characters that a system does not allow.
+
+    It differs from `taken` also where upper and lower case are the same.
+    """
+    base = re.sub(r'[<>:"/\\|?*\x00-\x1f\x7f]', "_", unicodedata.normalize("NFC", name)).strip(" .") or "pupil"
+    unused, number = base, 1
+    while unused.casefold() in {one.casefold() for one in taken}:
+        number += 1
+        unused = f"{base} {number}"
     return unused
 
 

@@ -6,24 +6,31 @@ GET  class/sheet            names with links and their QR codes
 GET  class/room             address and code with which pupils pick a name, and the QR code of both; not with links only
 GET  class/programs.zip     the programs of all pupils
 GET  class/missing          names of the pupils without one
+GET  class/handouts         what was handed out, and how far each pupil is
+GET  class/handouts/<id>    a link with which pupils of the class open a hand-out, and its QR code
+GET  class/results.csv      how far each pupil is, for a spreadsheet
 POST class/<action>         {"pupils": [ids] or null for all, …}; actions: see `_ACTIONS`
 """
 
 from __future__ import annotations
 
+import asyncio
+import base64
 import io
 import json
 from collections.abc import Awaitable, Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from thymio_sim_ros.access import RefusedError, Visitor
 from thymio_sim_ros.classroom.address import ClassAddress
 from thymio_sim_ros.classroom.classroom import MAX_MESSAGE, Classroom
+from thymio_sim_ros.classroom.errors import ClassError
+from thymio_sim_ros.classroom.handouts import KINDS, MAX_CONTENT, Handout, check_time, checked_content
 
-__all__ = ["MAX_BODY", "Answer", "answer"]
+__all__ = ["MAX_BODY", "Answer", "answer", "opened"]
 
-MAX_BODY = 100_000
+MAX_BODY = MAX_CONTENT * 4 // 3 + 100_000
 """Bytes of a request's body."""
 _JSON = "application/json"
 
@@ -58,6 +65,18 @@ async def answer(
     return _json({})
 
 
+async def opened(classroom: Classroom, pupil: str, number: str) -> Answer:
+    """A hand-out that a pupil opens: kind, name and content in base64. Raises RefusedError."""
+    handout = classroom.handouts.find(number)
+    if handout is None:
+        raise RefusedError(404, "Your teacher has taken this back.")
+    try:
+        content = base64.b64encode(await classroom.open(pupil, handout)).decode()
+    except OSError as error:
+        raise _not_kept(error) from error
+    return _json({"kind": handout.kind, "name": handout.name, "content": content})
+
+
 async def _read(classroom: Classroom, place: ClassAddress, name: str, url: str) -> Answer:
     if name == "state":
         return _json({**classroom.state(), "has_room": place.has_room})
@@ -71,6 +90,14 @@ async def _read(classroom: Classroom, place: ClassAddress, name: str, url: str) 
         return Answer(classroom.programs(), "application/zip", "programs.zip")
     if name == "missing":
         return _json(classroom.missing())
+    if name == "results.csv":
+        return Answer(f"\ufeff{classroom.table()}".encode(), "text/csv; charset=utf-8", "results.csv")
+    if name == "handouts":
+        return _json(_handouts(classroom))
+    number = name.removeprefix("handouts/")
+    if name != number and place.has_room and (handout := classroom.handouts.find(number)):
+        code = classroom.folder.room_code
+        return _json({"name": handout.name, **_with_qr_code(f"{url}#token={code}&handout={handout.id}")})
     if name.startswith("plans/") and (plan := await classroom.plan(name.removeprefix("plans/"))) is not None:
         return _json(plan)
     raise RefusedError(404, "there is no such document")
@@ -101,11 +128,73 @@ async def _show(classroom: Classroom, fields: Mapping[str, Any]) -> None:
     await classroom.show(shown)
 
 
+async def _lower(classroom: Classroom, fields: Mapping[str, Any]) -> None:
+    await classroom.lower_hands(_pupils(classroom, fields))
+
+
+async def _hand_out(classroom: Classroom, fields: Mapping[str, Any]) -> None:
+    kind, name, content, due = (fields.get(key) for key in ("kind", "name", "content", "due"))
+    if kind not in KINDS:
+        raise RefusedError(400, f"kind: expected {', '.join(KINDS)}")
+    if not isinstance(name, str) or not isinstance(content, str):
+        raise RefusedError(400, "name, content: expected texts")
+    if not isinstance(due, str):
+        raise RefusedError(400, "due: expected a time, or an empty text")
+    if due:
+        try:
+            check_time(due)
+        except ValueError as error:
+            raise RefusedError(400, f"due: {error}") from error
+    solution_of = "" if fields.get("solution_of") in (None, "") else _handout(classroom, fields, "solution_of").id
+    pupils = _pupils(classroom, fields)
+    try:
+        data = await asyncio.to_thread(checked_content, kind, name, content)
+        await classroom.hand_out(classroom.handouts.add(kind, name, data, pupils, due=due, solution_of=solution_of))
+    except ClassError as error:
+        raise RefusedError(400, str(error)) from error
+    except OSError as error:
+        raise _not_kept(error) from error
+
+
+def _not_kept(error: OSError) -> RefusedError:
+    return RefusedError(507, f"{error.filename}: {error.strerror}; expected a folder of the class with room")
+
+
+async def _take_back(classroom: Classroom, fields: Mapping[str, Any]) -> None:
+    handout = _handout(classroom, fields, "handout")
+    try:
+        classroom.handouts.remove(handout)
+    except OSError as error:
+        raise _not_kept(error) from error
+    await classroom.hand_out(handout)
+
+
+def _handout(classroom: Classroom, fields: Mapping[str, Any], key: str) -> Handout:
+    """The hand-out that a request is for."""
+    number = fields.get(key)
+    handout = classroom.handouts.find(number) if isinstance(number, str) else None
+    if handout is None:
+        raise RefusedError(400, f"{key}: expected the id of a hand-out")
+    return handout
+
+
+def _handouts(classroom: Classroom) -> list[Mapping[str, Any]]:
+    """The hand-outs with the progress of their pupils, by id."""
+    progress: dict[str, dict[str, Any]] = {handout.id: {} for handout in classroom.handouts.all()}
+    for handout, seat, reached in classroom.results():
+        late = handout.is_late(reached.passed or reached.changed)
+        progress[handout.id][seat.place.id] = {**asdict(reached), "late": late}
+    return [{**asdict(handout), "progress": progress[handout.id]} for handout in classroom.handouts.all()]
+
+
 _ACTIONS: Mapping[str, Callable[[Classroom, Mapping[str, Any]], Awaitable[None]]] = {
     "pause": _pause,
     "restart": _restart,
     "message": _message,
     "show": _show,
+    "lower": _lower,
+    "handout": _hand_out,
+    "take_back": _take_back,
 }
 
 

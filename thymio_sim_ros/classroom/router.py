@@ -3,7 +3,8 @@
 /                 the page on which a pupil picks a name; room/names is its list, which needs the code of the room,
                   room says whether there is a code
 /teacher/         the teacher's page; teacher/class/… is its interface (`requests`), which needs the teacher's token
-/p/<id>/          a pupil: files of the page come from here, all other requests are passed on to the suite
+/p/<id>/          a pupil: files of the page come from here, all other requests are passed on to the suite, except
+                  p/<id>/class/handouts/<id>, a file that was handed out, which needs the pupil's token
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from thymio_sim_ros.access import AccessCheck, AccessRules, RefusedError, Tokens
 from thymio_sim_ros.access.check import Report
 from thymio_sim_ros.classroom.address import ClassAddress
 from thymio_sim_ros.classroom.classroom import Classroom
-from thymio_sim_ros.classroom.requests import MAX_BODY, Answer, answer
+from thymio_sim_ros.classroom.requests import MAX_BODY, Answer, answer, opened
 from thymio_sim_ros.classroom.seat import Seat
 from thymio_sim_ros.classroom.suite_proxy import SuiteProxy, is_upgrade
 from thymio_sim_ros.web.http_connections import COMMON_HEADERS, start_answer, text_response
@@ -45,6 +46,9 @@ class Router:
         self._classroom, self._page, self._proxy = classroom, page, proxy
         self._teacher = _check(classroom.folder.teacher_token, "token of the teacher", report)
         self._room = _check(classroom.folder.room_code, "code of the room", report)
+        self._pupils = {
+            pupil: _check(seat.place.token, "token of the pupil", report) for pupil, seat in classroom.seats.items()
+        }
         self._place = place
 
     async def answer(self, request: web.BaseRequest) -> web.StreamResponse:
@@ -82,6 +86,10 @@ class Router:
                 return _response(Answer(json.dumps(self._classroom.room()).encode()))
             case ["p", pupil] if pupil in self._classroom.seats:
                 return _redirect(request, f"{pupil}/{mark}{query}")
+            case ["p", pupil, "class", "handouts", number] if pupil in self._classroom.seats:
+                await self._pupils[pupil].role(visitor)
+                start_answer(request)
+                return _response(await opened(self._classroom, pupil, number))
             case ["p", pupil, *rest] if pupil in self._classroom.seats:
                 seat = self._classroom.seats[pupil]
                 return await self._of_pupil(request, visitor, seat, f"{_file(rest, '')}{mark}{query}")

@@ -10,9 +10,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import hashlib
+import json
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,12 +23,16 @@ from thymio_sim_ros.classroom.bridge_client import (
     DRAFT,
     PLAYGROUND,
     PROGRAM_NAME,
+    RAISED_HAND,
     SOURCE,
     BridgeClient,
     SuiteStatus,
 )
 from thymio_sim_ros.classroom.folder import ClassFolder, Place, Work
+from thymio_sim_ros.classroom.handouts import Handout, Handouts, now
+from thymio_sim_ros.classroom.progress import ProgressLog
 from thymio_sim_ros.classroom.suite_process import SuiteOptions, SuiteProcess, command, environment, free_port
+from thymio_sim_ros.classroom.suite_state import MissionTry
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.files.loading import NO_PROGRAM, is_playground_text
 
@@ -64,10 +69,20 @@ class Seat:
     """Supervises one suite. `run` keeps it running until it is cancelled. Only for the thread of the event loop."""
 
     def __init__(
-        self, place: Place, options: SuiteOptions, folder: ClassFolder, starting: asyncio.Semaphore | None = None
+        self,
+        place: Place,
+        options: SuiteOptions,
+        folder: ClassFolder,
+        handouts: Handouts,
+        starting: asyncio.Semaphore | None = None,
     ) -> None:
-        """`starting` limits how many suites start at the same time."""
+        """`starting` limits how many suites start at the same time. Raises OSError."""
         self.place = place
+        self.progress = ProgressLog(folder.pupil(place))
+        """How far the pupil is with what was handed out."""
+        self.hand = ""
+        """When the pupil raised a hand (ISO 8601); "": it is not raised."""
+        self._handouts = handouts
         self._options, self._folder = options, folder
         self._starting = starting or asyncio.Semaphore(1)
         self._client: BridgeClient | None = None
@@ -145,6 +160,20 @@ class Seat:
         if self._client is not None:
             await self._attempt(self._client.pause(paused=paused))
 
+    async def lower_hand(self) -> None:
+        """The teacher has seen the raised hand."""
+        self.hand = ""
+        await self._show_page()
+
+    async def open(self, handout: Handout) -> None:
+        """The pupil has opened a hand-out. Raises OSError."""
+        self.progress.open(handout)
+        await self._show_page()
+
+    async def show_handouts(self) -> None:
+        """Show on the page what is handed out now."""
+        await self._show_page()
+
     async def show(self, notice: Notice) -> None:
         """Show a notice on the page; a suite that is restarted shows it too."""
         self._notice = notice
@@ -168,6 +197,22 @@ class Seat:
             "paused_by_teacher": self._wants_pause,
             "notice_link": self._notice.link,
             "notice": self._notice.text,
+            "raised_hand": self.hand != "",
+            "handouts": json.dumps([self._shown(handout) for handout in self._handouts.of(self.place.id)]),
+        }
+
+    def _shown(self, handout: Handout) -> Mapping[str, Any]:
+        """What the page of the pupil shows of a hand-out."""
+        progress = self.progress.of(handout)
+        solved = self._handouts.find(handout.solution_of)
+        return {
+            "id": handout.id,
+            "kind": handout.kind,
+            "name": handout.name,
+            "due": handout.due,
+            "solution_of": "" if solved is None else solved.name,
+            "opened": progress.opened != "",
+            "stars": progress.stars,
         }
 
     async def _start(self, *, is_steady: bool) -> None:
@@ -190,7 +235,7 @@ class Seat:
         end_s = clock_s() + START_S
         try:
             while clock_s() < end_s:
-                client = self._client = BridgeClient(url, self.place.token, self._on_parameter)
+                client = self._client = BridgeClient(url, self.place.token, self._on_parameter, self._on_try)
                 greeting = asyncio.create_task(self._greet(client))
                 try:
                     await client.run()
@@ -246,7 +291,12 @@ class Seat:
             for task in (ended, asked, serving):
                 task.cancel()
 
-    def _on_parameter(self, name: str, value: str) -> None:
+    def _on_parameter(self, name: str, value: str | bool) -> None:
+        if isinstance(value, bool):
+            # A suite that has just started does not know yet that the hand is raised.
+            if name == RAISED_HAND and self.phase == "running" and value != (self.hand != ""):
+                self.hand = now() if value else ""
+            return
         work = self._work
         # A path that a node of the pupil has set is not opened here.
         if name == PLAYGROUND and (is_playground_text(value) or value in resources.playgrounds()):
@@ -261,8 +311,24 @@ class Seat:
         if work == self._work:
             return
         self._work = work
-        try:
+        with self._reporting():
             self._folder.keep(self.place, work)
+            handout = self._handouts.find(self.progress.current)
+            if name == SOURCE and handout is not None:
+                self.progress.run(handout, value)
+
+    def _on_try(self, attempt: MissionTry) -> None:
+        of_class = (one for one in self._handouts.of(self.place.id) if one.kind == "mission")
+        handout = next((one for one in of_class if one.stem == attempt.mission), None)
+        if handout is not None:
+            with self._reporting():
+                self.progress.tried(handout, attempt)
+
+    @contextlib.contextmanager
+    def _reporting(self) -> Iterator[None]:
+        """Report files that cannot be written: the lesson goes on."""
+        try:
+            yield
         except OSError as error:
             _log.error("the work of %s is not kept: %s: %s", self.place.name, error.filename, error.strerror)
 
@@ -295,6 +361,8 @@ class Seat:
             "fallen": [] if state is None else state.fallen,
             "programs": programs,
             "overview": client.overview,
+            "hand": self.hand,
+            "trouble": "" if client.attempt is None else client.attempt.trouble,
             "plan": self.plan,
             "link": f"../p/{self.link()}",
             "watch": f"../p/{self.link(read_only=True)}",

@@ -13,11 +13,12 @@ from typing import Any, NoReturn
 
 from thymio_sim_ros.errors import ThymioSimError
 
-__all__ = ["Overview", "SuiteState", "SuiteStateError", "read_overview", "read_state"]
+__all__ = ["MissionTry", "Overview", "SuiteState", "SuiteStateError", "read_overview", "read_state", "read_try"]
 
 Overview = Mapping[str, Mapping[str, list[float] | None]]
 """`robots` and `objects` by name: [x, y, yaw, red, green, blue] and [x, y, yaw], None for one that has fallen."""
 _LENGTHS = {"robots": 6, "objects": 3}
+_LONGEST_NAME, _MOST_STARS = 200, 3
 
 
 class SuiteStateError(ThymioSimError, ValueError):
@@ -32,6 +33,22 @@ class SuiteState:
     achieved: float
     fallen: tuple[str, ...]
     """Names of the robots that fell off an edge."""
+
+
+@dataclass(frozen=True, slots=True)
+class MissionTry:
+    """The present try of the mission that is open."""
+
+    mission: str
+    """Name of the mission: that of its file without the ending."""
+    tries: int
+    """Number of the try since the mission was opened."""
+    has_passed: bool
+    stars: int
+    at_s: float
+    """Simulated time of the try."""
+    trouble: str
+    """fallen, stuck, idle (the program has done nothing yet), or ""."""
 
 
 def read_state(text: str) -> SuiteState:
@@ -52,6 +69,22 @@ def read_overview(text: str) -> Overview:
             raise SuiteStateError(f"{kind}: expected an object")
         overview[kind] = {name: _pose(values, length) for name, values in items.items()}
     return overview
+
+
+def read_try(text: str) -> MissionTry:
+    """The try in a message of `/simulator/_mission/try`. Raises SuiteStateError."""
+    match _object(text):
+        case {
+            "mission": str(mission),
+            "tries": int(tries),
+            "state": str(state),
+            "stars": list(stars),
+            "at_s": int() | float() as at_s,
+            "trouble": str(trouble),
+        } if len(mission) <= _LONGEST_NAME and not isinstance(tries, bool):
+            reached = sum(star is True for star in stars)
+            return MissionTry(mission, tries, state == "passed", min(reached, _MOST_STARS), _finite(at_s), trouble[:20])
+    raise SuiteStateError("expected the fields mission, tries, state, stars, at_s and trouble")
 
 
 def _object(text: str) -> dict[str, Any]:

@@ -63,6 +63,7 @@ def run(argv: Sequence[str]) -> int:
         try:
             folder = ClassFolder(path)
             places = folder.places(names)
+            classroom = Classroom(places, options, folder)
         except ClassError as error:
             raise UsageError(str(error)) from error
         except OSError as error:
@@ -70,7 +71,7 @@ def run(argv: Sequence[str]) -> int:
         _check_domains(options, places)
         check_port(place.address, place.port, "the class", "--port")
         with asyncio.Runner(loop_factory=asyncio.SelectorEventLoop) as runner:  # as `ServerThread`
-            runner.run(_serve(place, Classroom(places, options, folder), is_kept=given.folder is not None))
+            runner.run(_serve(place, classroom, is_kept=given.folder is not None))
     return 0
 
 

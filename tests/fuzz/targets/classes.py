@@ -19,6 +19,7 @@ from thymio_sim_ros.classroom.cdr import CdrError, read_diagnostic, read_string
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import ClassFolder
+from thymio_sim_ros.classroom.handouts import Handouts
 from thymio_sim_ros.classroom.pupils import MAX_NAME, folder_name, read_pupils
 from thymio_sim_ros.classroom.requests import answer
 from thymio_sim_ros.classroom.seat import Seat
@@ -66,9 +67,14 @@ def _suite(data: bytes) -> None:
     """What the suite of a pupil sends to the class, which any node of the pupil can publish, too."""
     folder = ClassFolder(FOLDER / "open class")
     (place,) = folder.places(["Ada"])
-    seat = Seat(place, OPTIONS, folder)
-    seat._client = client = BridgeClient("ws://localhost:1/", "token", seat._on_parameter)
-    client._topics = {1: "/simulator/_state", 2: "/simulator/_overview", 3: "/_aseba/status"}
+    seat = Seat(place, OPTIONS, folder, Handouts(folder.handouts))
+    seat._client = client = BridgeClient("ws://localhost:1/", "token", seat._on_parameter, seat._on_try)
+    client._topics = {
+        1: "/simulator/_state",
+        2: "/simulator/_overview",
+        3: "/_aseba/status",
+        4: "/simulator/_mission/try",
+    }
     for part in data.split(b"\n--\n"):
         asyncio.run(client._receive(text(part) if part.startswith(b"{") else part))
         json.dumps(seat.summary(), allow_nan=False).encode()

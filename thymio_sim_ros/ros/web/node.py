@@ -64,6 +64,8 @@ class WebParams:
     notice_link: str = param("", "Address that the page offers with the notice, also relative to the page")
     pupil: str = param("", "Name of the pupil whose page this is, which the page shows")
     paused_by_teacher: bool = param(False, "Whether a teacher has paused time: the page locks its time controls")
+    raised_hand: bool = param(False, "Whether the pupil has raised a hand on the page, until the teacher lowers it")
+    handouts: str = param("[]", "Files that a teacher has handed out, as JSON, which the page of a pupil offers")
     draft: str = param("", "Text that the page of a pupil has in its editor, as an .aesl file")
 
 

@@ -1,0 +1,198 @@
+"""The hand-outs of a class: programs, playgrounds and missions that the teacher gives to pupils.
+
+`handouts.json` in the folder of the class lists them, `<id>.bin` beside it is the content of each. Ids cannot be
+guessed: a link with one is enough for every pupil of the class.
+"""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import json
+import re
+import secrets
+import unicodedata
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from aseba_vm.aesl.reader import read as read_aesl
+from aseba_vm.aesl.text_decoding import decode
+from aseba_vm.cli.output import write_file
+from aseba_vm.errors import AsebaError
+from thymio_sim_ros.classroom.errors import ClassError
+from thymio_sim_ros.classroom.folder import read_text, write_text
+from thymio_sim_ros.errors import ThymioSimError
+from thymio_sim_ros.files.loading import load_playground
+
+__all__ = ["KINDS", "MAX_CONTENT", "MAX_HANDOUTS", "Handout", "Handouts", "check_time", "checked_content", "now"]
+
+KINDS = ("program", "playground", "mission")
+MAX_HANDOUTS = 60
+"""Hand-outs of a class: more than one for each week of a school year."""
+MAX_CONTENT = 4_000_000
+"""Bytes of one of them."""
+MAX_NAME, MAX_ENDING = 80, 12
+"""Characters of the name of a file, and of its ending."""
+_FILE = "handouts.json"
+_RESERVED = frozenset({"program", "draft"})
+"""Names of files that the zip with the work of the class has beside those of hand-outs."""
+_ID = re.compile(r"[\w-]{8,20}")
+
+
+@dataclass(frozen=True, slots=True)
+class Handout:
+    """One of them; `name` is that of its file, unlike that of any other. Times are those of ISO 8601, "": none."""
+
+    id: str
+    kind: str
+    name: str
+    pupils: tuple[str, ...]
+    """Ids of the pupils who have it."""
+    given: str
+    due: str = ""
+    solution_of: str = ""
+    """Id of the hand-out whose solution this is."""
+
+    @property
+    def stem(self) -> str:
+        """Its name without the ending: the name of the pupil's program for it."""
+        return self.name.rpartition(".")[0] or self.name
+
+    def is_late(self, at: str) -> bool:
+        """Whether something at this time was after the date by which it is due."""
+        return self.due != "" and at != "" and datetime.fromisoformat(at) > datetime.fromisoformat(self.due)
+
+
+class Handouts:
+    """All hand-outs of a class, in the order in which they were given. Invariant: the file has them."""
+
+    def __init__(self, path: Path) -> None:
+        """Read those of a folder. Raises ClassError for a file that this program has not written, and OSError."""
+        self._path = path
+        try:
+            listed = json.loads(read_text(path / _FILE) or "[]")
+            self._all = {handout.id: handout for handout in map(_handout, listed)}
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+            raise ClassError(
+                f"{path / _FILE}: {error}; expected the file as this program wrote it: restore or delete it"
+            ) from error
+
+    def all(self) -> list[Handout]:
+        """All of them."""
+        return list(self._all.values())
+
+    def of(self, pupil: str) -> list[Handout]:
+        """Those that a pupil has."""
+        return [handout for handout in self._all.values() if pupil in handout.pupils]
+
+    def find(self, number: str) -> Handout | None:
+        """The one with this id."""
+        return self._all.get(number)
+
+    def content(self, handout: Handout) -> bytes:
+        """The file that was handed out. Raises OSError."""
+        return (self._path / f"{handout.id}.bin").read_bytes()
+
+    def add(
+        self, kind: str, name: str, content: bytes, pupils: Iterable[str], *, due: str = "", solution_of: str = ""
+    ) -> Handout:
+        """Hand out a file whose content was checked. Raises ClassError where there are too many, and OSError."""
+        if len(self._all) >= MAX_HANDOUTS:
+            raise ClassError(f"found {MAX_HANDOUTS} hand-outs, expected fewer: remove one that is no longer needed")
+        handout = Handout(secrets.token_urlsafe(9), kind, self._free_name(name), tuple(pupils), now(), due, solution_of)
+        write_file(str(self._path / f"{handout.id}.bin"), content, mode=0o600)
+        self._keep({**self._all, handout.id: handout})
+        return handout
+
+    def give(self, handout: Handout, pupil: str) -> Handout:
+        """Add a pupil to those who have it. Raises OSError."""
+        if pupil in handout.pupils:
+            return handout
+        given = replace(handout, pupils=(*handout.pupils, pupil))
+        self._keep({**self._all, handout.id: given})
+        return given
+
+    def remove(self, handout: Handout) -> None:
+        """Take it back: what pupils have made of it stays. Raises OSError."""
+        self._keep({number: one for number, one in self._all.items() if number != handout.id})
+        with contextlib.suppress(FileNotFoundError):
+            (self._path / f"{handout.id}.bin").unlink()
+
+    def _keep(self, handouts: Mapping[str, Handout]) -> None:
+        write_text(self._path / _FILE, json.dumps([asdict(one) for one in handouts.values()], indent=2) + "\n")
+        self._all = dict(handouts)
+
+    def _free_name(self, name: str) -> str:
+        plain = _file_name(name)
+        stem, dot, ending = plain.rpartition(".")
+        stem, ending = (stem, dot + ending) if stem else (plain, "")
+        taken = {one.stem.casefold() for one in self._all.values()} | _RESERVED
+        unused, number = stem, 1
+        while unused.casefold() in taken:
+            number += 1
+            unused = f"{stem} {number}"
+        return unused + ending
+
+
+def now() -> str:
+    """The time, in the time zone of this computer."""
+    return datetime.now(UTC).astimezone().isoformat(timespec="seconds")
+
+
+def check_time(text: str) -> None:
+    """Raise ValueError for a time that is not one of ISO 8601 with a time zone."""
+    if datetime.fromisoformat(text).tzinfo is None:
+        raise ValueError(f"found {text!r}, expected a time with its zone, such as 2026-12-01T09:00:00+01:00")
+
+
+def checked_content(kind: str, name: str, encoded: str) -> bytes:
+    """The content of a file in base64, if it is what its kind says. Takes a while. Raises ClassError."""
+    try:
+        content = base64.b64decode(encoded, validate=True)
+    except ValueError as error:
+        raise ClassError(f"content: {error}; expected a file in base64") from error
+    if not 0 < len(content) <= MAX_CONTENT:
+        raise ClassError(f"{name}: found {len(content)} bytes, expected 1 to {MAX_CONTENT}")
+    try:
+        if kind == "program":
+            text = decode(content).text
+            if text.lstrip().startswith("<"):
+                read_aesl(text, is_strict=False)
+        elif kind == "playground":
+            load_playground(f"data:;name={_file_name(name).replace(';', '_')};base64,{encoded}")
+        elif not content.startswith(b"PK"):
+            _check_mission(content)
+    except (AsebaError, ThymioSimError, OSError, ValueError, RecursionError) as error:
+        text = str(error)
+        raise ClassError(text if text.startswith(f"{name}: ") else f"{name}: {text}") from error
+    return content
+
+
+def _check_mission(content: bytes) -> None:
+    """Raise ValueError for what is no mission at all: the simulator of the pupil, which reads it, says more."""
+    fields = json.loads(content.decode("utf-8-sig"))
+    if not isinstance(fields, dict) or "success" not in fields:
+        raise ValueError("expected a mission: a JSON file with the field success (docs/missions.md)")
+
+
+def _file_name(name: str) -> str:
+    """The name of a file without folders and characters that some system does not allow."""
+    plain = unicodedata.normalize("NFC", name).replace("\\", "/").rpartition("/")[2]
+    plain = re.sub(r'[<>:"|?*\x00-\x1f\x7f]', "_", plain).strip(" .")
+    stem, dot, ending = plain.rpartition(".")
+    if stem and len(ending) < MAX_ENDING:
+        return f"{stem[: MAX_NAME - len(ending) - 1]}{dot}{ending}"
+    return plain[:MAX_NAME] or "file"
+
+
+def _handout(fields: dict[str, Any]) -> Handout:
+    handout = Handout(**{**fields, "pupils": tuple(fields["pupils"])})
+    texts = (handout.id, handout.kind, handout.name, handout.given, handout.due, handout.solution_of, *handout.pupils)
+    if handout.due != "":
+        check_time(handout.due)
+    if not all(isinstance(text, str) for text in texts) or not _ID.fullmatch(handout.id) or handout.kind not in KINDS:
+        raise ValueError(f"found the hand-out {str(fields.get('name'))!r:.60} with invalid fields")
+    return handout
