@@ -135,7 +135,7 @@ class Page {
     this.program = new ProgramHost({ slot: element("#panel-program"), client: () => this.client });
     this.creator = new CreatorHost({ element, scene: () => this.scene });
     this.mission = new MissionHost(element('[data-slot="mission"]'));
-    this.share = new ShareHost();
+    this.share = new ShareHost({ token: token ?? "" });
     this.tour = new TourHost();
     this.welcome = new WelcomeHost(element('[data-slot="welcome"]'));
     this.panels = new PanelHost(element, this.workspace);
@@ -213,6 +213,8 @@ class Page {
         PARAMETERS.noticeLink,
         PARAMETERS.pupil,
         PARAMETERS.pausedByTeacher,
+        PARAMETERS.raisedHand,
+        PARAMETERS.handouts,
       ],
       isServed,
     });

@@ -2,6 +2,10 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { ClassApi, TokenError } from "../../web_ui/classroom/api.js";
+import { base64, kindOfFile } from "../../web_ui/classroom/hand_out.js";
+import { progressText } from "../../web_ui/classroom/handout_table.js";
+import texts from "../../web_ui/i18n/classroom.texts.js";
+import { translator } from "../../web_ui/i18n/index.js";
 import { bodyColor, fit } from "../../web_ui/classroom/plan.js";
 import { needsHelp, pupilState, slowPercent } from "../../web_ui/classroom/pupil_state.js";
 
@@ -11,7 +15,7 @@ import { needsHelp, pupilState, slowPercent } from "../../web_ui/classroom/pupil
 function pupil(given) {
   const program = { state: "running", program: "mine.aesl", line: "", fault: "" };
   const known = { id: "ada", name: "Ada", reason: "", restarts: 0, paused: false, held: false, achieved: 1, fallen: [], programs: [program] };
-  return { ...known, phase: "running", overview: {}, plan: "1", notice: "", link: "", watch: "", ...given };
+  return { ...known, phase: "running", overview: {}, plan: "1", notice: "", hand: "", trouble: "", link: "", watch: "", ...given };
 }
 
 test("a pupil's state is one word, and the worst of several robots", () => {
@@ -31,6 +35,39 @@ test("a pupil needs help with a mistake or a broken simulator, not while waiting
     [pupil({}), pupil({ phase: "broken" }), pupil({ phase: "starting" }), pupil({ paused: true, held: true }), pupil({ fallen: ["thymio"] })].map(needsHelp),
     [false, true, false, false, true],
   );
+});
+
+test("a raised hand needs help, and so does a robot that is stuck in a mission while its program runs", () => {
+  assert.ok(needsHelp(pupil({ hand: "2026-11-30T10:00:00+01:00", paused: true })));
+  assert.ok(needsHelp(pupil({ trouble: "stuck" })));
+  assert.ok(!needsHelp(pupil({ trouble: "stuck", paused: true, held: true })));
+});
+
+test("the kind of a file that is handed out is that of its content", () => {
+  const bytes = (/** @type {string} */ text) => new TextEncoder().encode(text);
+  assert.equal(kindOfFile("bus.AESL", bytes("<network>")), "program");
+  assert.equal(kindOfFile("bus.json", bytes('{"format": 1, "success" : "home"}')), "mission");
+  assert.equal(kindOfFile("room.json", bytes('{"format": 1, "title": "A success"}')), "playground");
+  assert.equal(kindOfFile("bus.zip", bytes("PK mission.json")), "mission");
+  assert.equal(kindOfFile("room.zip", bytes("PK room.json")), "playground");
+  assert.equal(base64(Uint8Array.from([0, 255, 128])), "AP+A");
+});
+
+test("how far a pupil is with a hand-out is said in a few words", () => {
+  const t = translator("en", texts);
+  const clock = () => "10:31";
+  const nothing = { opened: "", changed: "", tries: 0, stars: 0, passed: "", best_s: 0, late: false };
+  /** @param {"program" | "mission"} kind @param {object} [progress] */
+  const words = (kind, progress) => {
+    const handout = { id: "a", kind, name: "bus.json", pupils: [], due: "", solution_of: "", progress: {} };
+    return progressText(handout, progress && { ...nothing, ...progress }, t, clock);
+  };
+  assert.equal(words("program"), "–");
+  assert.equal(words("program", {}), "not opened");
+  assert.equal(words("program", { opened: "x" }), "opened 10:31");
+  assert.equal(words("program", { opened: "x", changed: "y", tries: 3 }), "runs: 3 · 10:31");
+  const passed = { opened: "x", changed: "y", tries: 2, stars: 2, passed: "y", best_s: 7.25, late: true };
+  assert.equal(words("mission", passed), "★★ · 7.3 s · tries: 2 · 10:31 · late");
 });
 
 test("a simulator that does not keep up is shown in percent of real time", () => {

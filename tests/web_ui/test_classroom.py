@@ -62,7 +62,7 @@ def test_a_teacher_sees_all_robots_and_a_pupil_sees_the_message(
     assert watched == urljoin(group.address, group.pupil("jurg")["watch"])
     page.click("[data-verb=close]")
     note.locator("a").wait_for(state="hidden")
-    note.locator("button").click()
+    note.get_by_role("button", name="Hide").click()
     note.wait_for(state="hidden")
 
     with page.expect_download() as download:

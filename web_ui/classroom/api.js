@@ -17,6 +17,8 @@
  * @property {Overview} overview
  * @property {string} plan        names the playground
  * @property {string} notice      the message on the pupil's page
+ * @property {string} hand       when the pupil raised a hand; "": it is not raised
+ * @property {string} trouble    of the mission that is open: fallen, stuck, idle, or ""
  * @property {string} link
  * @property {string} watch       link to watch only
  */
@@ -60,6 +62,35 @@ export class ClassApi {
   /** Names of the pupils who have no program. @returns {Promise<string[]>} */
   async missing() {
     return (await this.#fetch("missing")).json();
+  }
+
+  /** @returns {Promise<import("./handout_table.js").Handout[]>} */
+  async handouts() {
+    return (await this.#fetch("handouts")).json();
+  }
+
+  /** A link with which pupils open a hand-out. @param {string} id @returns {Promise<{ name: string, url: string, qr: string }>} */
+  async handoutLink(id) {
+    return (await this.#fetch(`handouts/${id}`)).json();
+  }
+
+  async results() {
+    return (await this.#fetch("results.csv")).blob();
+  }
+
+  /** @param {import("./hand_out.js").Given} given */
+  handOut(given) {
+    return this.#post("handout", given);
+  }
+
+  /** @param {string} handout  its id */
+  takeBack(handout) {
+    return this.#post("take_back", { handout });
+  }
+
+  /** @param {readonly string[]} pupils */
+  lowerHands(pupils) {
+    return this.#post("lower", { pupils });
   }
 
   /** @param {readonly string[] | null} pupils  null: all @param {boolean} paused */

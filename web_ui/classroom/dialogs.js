@@ -11,7 +11,7 @@ import { qrImages } from "./sheet.js";
 const MAX_MESSAGE = 500;
 
 /** Open a dialog, which is removed when it closes. @param {HTMLDialogElement} dialog */
-function open(dialog) {
+export function open(dialog) {
   dialog.addEventListener("close", () => dialog.remove());
   document.body.append(dialog);
   dialog.showModal();
@@ -64,6 +64,18 @@ export function ask({ question, verb, t, act }) {
       h("button", { type: "button", class: "btn line", "data-verb": "cancel", onclick: () => dialog.close() }, t("cancel")),
       h("button", { type: "button", class: "btn you", "data-verb": "yes", onclick: yes }, verb),
     ),
+  );
+  open(dialog);
+}
+
+/** A dialog with anything in it, to look at. @param {readonly Node[]} content @param {string} title  id of its title @param {Translate} t */
+export function showContent(content, title, t) {
+  const close = () => dialog.close();
+  const dialog = h(
+    "dialog",
+    { class: "card class-dialog class-content", "aria-labelledby": title },
+    ...content,
+    h("div", { class: "row class-buttons" }, h("button", { type: "button", class: "btn line", "data-verb": "close", onclick: close }, t("close"))),
   );
   open(dialog);
 }

@@ -6,7 +6,7 @@ import { localStore } from "../browser/local_storage.js";
 import { PageLanguage } from "../browser/page_language.js";
 import texts from "../i18n/classroom.texts.js";
 import { translator } from "../i18n/index.js";
-import { PARAMETER, sharedPart } from "../sharing/link.js";
+import { HANDOUT, PARAMETER, sharedPart } from "../sharing/link.js";
 import { h, setText } from "../ui/dom.js";
 
 /** @typedef {{ name: string, link: string }} Place   `link` is relative to this page */
@@ -76,8 +76,9 @@ class JoinPage {
 
   /** @param {readonly Place[]} places */
   #showNames(places) {
-    const part = sharedPart(location.hash); // a link of a pupil leads here: the page of the chosen name opens it
-    const shared = part === null ? "" : `&${PARAMETER}=${part}`;
+    // Links of pupils and of the teacher lead here: the page of the chosen name opens what they share.
+    const parts = [PARAMETER, HANDOUT].map((key) => [key, sharedPart(location.hash, key)]);
+    const shared = parts.map(([key, part]) => (part === null ? "" : `&${key}=${part}`)).join("");
     const names = places.map(({ name, link }) => h("li", {}, h("a", { class: "btn line join-name", href: link + shared }, name)));
     this.main.replaceChildren(h("h2", {}, this.t("join.choose")), h("ul", { class: "join-names" }, ...names));
   }

@@ -11,7 +11,9 @@ import { translator } from "../i18n/index.js";
 import { h, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { ClassApi, TokenError } from "./api.js";
-import { ask, askMessage, present, showRoom } from "./dialogs.js";
+import { ask, askMessage, present, showContent, showRoom } from "./dialogs.js";
+import { askHandOut } from "./hand_out.js";
+import { HandoutTable, linkContent } from "./handout_table.js";
 import { PupilCard } from "./pupil_card.js";
 import { needsHelp } from "./pupil_state.js";
 import { sheetOf } from "./sheet.js";
@@ -22,6 +24,13 @@ import { sheetOf } from "./sheet.js";
 
 /** Time between two requests for the state. */
 const POLL_MS = 500;
+
+/** Save a file on the teacher's computer. @param {Blob} content @param {string} name */
+function save(content, name) {
+  const url = URL.createObjectURL(content);
+  h("a", { href: url, download: name }).click();
+  URL.revokeObjectURL(url);
+}
 
 /** @param {string} id */
 function byId(id) {
@@ -38,6 +47,7 @@ class TeacherPage {
     /** @type {Map<string, Plan>} */ this.plans = new Map();
     /** @type {Set<string>} */ this.asked = new Set();
     /** @type {Map<string, PupilCard>} */ this.cards = new Map();
+    /** @type {HandoutTable | null} while it is shown */ this.table = null;
     /** @type {{ id: string, draw: ReturnType<typeof present> } | null} */ this.presented = null;
     this.onlyHelp = false;
     this.hasRoom = false;
@@ -50,6 +60,7 @@ class TeacherPage {
     this.language.choose(code);
     this.t = translator(code, texts);
     this.cards.clear();
+    this.table = null;
     this.parts = this.#build();
     this.render();
   }
@@ -80,6 +91,7 @@ class TeacherPage {
       this.#button("pauseAll", "pause", () => this.api.pause(null, true)),
       this.#button("runAll", "run", () => this.api.pause(null, false)),
       this.#button("messageAll", "message", () => this.#message(null)),
+      this.#button("handouts", "give", () => this.#handouts()),
       this.#button("collect", "save", () => this.#collect()),
       room,
       this.#button("sheet", "list", () => this.#sheet()),
@@ -104,6 +116,7 @@ class TeacherPage {
   async poll() {
     for (;;) {
       if (!document.hidden) await this.#act(() => this.#refresh());
+      if (!document.hidden && this.table !== null) await this.#act(() => this.#fillTable());
       await new Promise((resolve) => setTimeout(resolve, POLL_MS));
     }
   }
@@ -143,6 +156,7 @@ class TeacherPage {
         this.presented = { id: one.id, draw: present({ pupil: one, t, offer }) };
         this.render();
       },
+      lower: ({ id }) => void this.#act(() => this.api.lowerHands([id])),
       restart: ({ id, name }) =>
         ask({ question: t("restart.ask", { name }), verb: t("restart"), t, act: () => void this.#act(() => this.api.restart([id])) }),
     });
@@ -168,15 +182,54 @@ class TeacherPage {
     const text = names.length === 0 ? t("collected") : t("collected.missing", { names: names.join(", ") });
     this.parts.missing.hidden = false;
     setText(this.parts.missing, text);
-    const url = URL.createObjectURL(programs);
-    h("a", { href: url, download: "programs.zip" }).click();
-    URL.revokeObjectURL(url);
+    save(programs, "programs.zip");
   }
 
   async #sheet() {
+    const links = await this.api.sheet();
+    this.#replaceMain((back) => sheetOf(links, this.t, back));
+  }
+
+  /** Show something in place of the class until it calls `back`. @param {(back: () => void) => HTMLElement} create */
+  #replaceMain(create) {
     const main = byId("main");
     const before = [...main.children];
-    main.replaceChildren(sheetOf(await this.api.sheet(), this.t, () => main.replaceChildren(...before)));
+    main.replaceChildren(create(() => main.replaceChildren(...before)));
+  }
+
+  /** Show what was handed out. */
+  async #handouts() {
+    const { t, api } = this;
+    /** @param {import("./handout_table.js").Handout | null} task */
+    const give = (task) => {
+      const send = async (/** @type {import("./hand_out.js").Given} */ given) => {
+        await api.handOut(given);
+        await this.#fillTable();
+        setText(byId("live"), t("handout.given"));
+      };
+      askHandOut({ t, pupils: this.pupils, task, send });
+    };
+    this.#replaceMain((back) => {
+      this.table = new HandoutTable(t, this.language.language, {
+        back: () => {
+          this.table = null;
+          back();
+        },
+        give: () => give(null),
+        results: () => void this.#act(async () => save(await api.results(), "results.csv")),
+        link: ({ id }) => void this.#act(async () => showContent(linkContent(await api.handoutLink(id), t), "link-title", t)),
+        solution: give,
+        takeBack: ({ id, name }) =>
+          ask({ question: t("takeBack.ask", { name }), verb: t("takeBack"), t, act: () => void this.#act(() => api.takeBack(id)) }),
+      });
+      return this.table.element;
+    });
+    await this.#fillTable();
+  }
+
+  async #fillTable() {
+    const handouts = await this.api.handouts();
+    this.table?.show(handouts, this.pupils);
   }
 
   async #refresh() {

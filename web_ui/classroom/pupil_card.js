@@ -14,6 +14,7 @@ import { pupilState, slowPercent } from "./pupil_state.js";
  * @property {(pupil: Pupil) => void} message
  * @property {(pupil: Pupil) => void} present
  * @property {(pupil: Pupil) => void} restart
+ * @property {(pupil: Pupil) => void} lower
  */
 
 /** @type {Readonly<Record<PupilState, [string, IconName | null]>>}  class of the chip, icon */
@@ -39,6 +40,12 @@ export class PupilCard {
     this.canvas = h("canvas", { role: "img", "aria-label": t("plan", { name: pupil.name }) });
     this.chip = h("span", { class: "chip" });
     this.detail = h("p", { class: "small muted" });
+    this.hand = h(
+      "button",
+      { type: "button", class: "btn soft pupil-hand", "data-verb": "lower", hidden: true, title: t("lower"), "aria-label": `${t("lower")}: ${pupil.name}`, onclick: () => actions.lower(this.pupil) },
+      icon("hand"),
+      h("span", {}, t("hand")),
+    );
     this.notice = h("p", { class: "small pupil-notice", hidden: true });
     this.state = "";
     const button = (/** @type {keyof CardActions} */ verb, /** @type {IconName} */ symbol) =>
@@ -58,6 +65,7 @@ export class PupilCard {
       { class: "card pupil", "data-pupil": pupil.id },
       this.canvas,
       h("div", { class: "row" }, h("h2", { class: "grow pupil-name", title: pupil.name }, pupil.name), this.chip),
+      this.hand,
       this.detail,
       this.notice,
       h("div", { class: "row pupil-actions" }, this.pauseButton, button("message", "message"), button("present", "screen"), this.open, button("restart", "reset")),
@@ -79,6 +87,7 @@ export class PupilCard {
     const details = detailsOf(pupil, t);
     setText(this.detail, details);
     setAttribute(this.detail, "title", details);
+    this.hand.hidden = pupil.hand === "";
     this.notice.hidden = pupil.notice === "";
     setText(this.notice, pupil.notice);
     const verb = pupil.paused ? "run" : "pause";
@@ -101,6 +110,7 @@ function detailsOf(pupil, t) {
   const parts = programs.map(({ program, line, fault }) =>
     [program, line === "" ? "" : t("line", { line }), fault].filter((part) => part !== "").join(", "),
   );
+  if (pupil.trouble === "stuck" || pupil.trouble === "idle") parts.unshift(t(`trouble.${pupil.trouble}`));
   if (slow !== null) parts.push(t("slow", { percent: slow }));
   if (reason !== "") parts.push(t("restarts", { count: restarts, reason }));
   return parts.join(" · ");

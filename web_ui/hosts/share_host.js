@@ -4,7 +4,7 @@
 import { textOf } from "../browser/text_file.js";
 import { translator } from "../i18n/index.js";
 import { languageOf } from "../program_tab/language_choice.js";
-import { LinkError, packed, PARAMETER, sharedPart, unpacked } from "../sharing/link.js";
+import { HANDOUT, LinkError, packed, PARAMETER, sharedPart, unpacked } from "../sharing/link.js";
 import { CONNECTION } from "../state/index.js";
 import { PARAMETERS } from "../state/names.js";
 import { LANGUAGES } from "./program_host.js";
@@ -31,12 +31,18 @@ export function sharedAddress(address, isOfPupil) {
 /** The address without what it shares. @param {string} address */
 export function withoutShared(address) {
   const [place, fragment = ""] = address.split("#");
-  const rest = fragment.split("&").filter((part) => part !== "" && !part.startsWith(`${PARAMETER}=`));
+  const rest = fragment.split("&").filter((part) => part !== "" && ![PARAMETER, HANDOUT].includes(part.split("=")[0]));
   return rest.length === 0 ? place : `${place}#${rest.join("&")}`;
 }
 
 export class ShareHost {
   /** @type {Context | null} */ #context = null;
+  #token = "";
+
+  /** @param {{ token: string }} options  of the pupil in a class: it opens what the teacher has handed out */
+  constructor({ token }) {
+    this.#token = token;
+  }
 
   /** Set the context: on start, and after a change of language. @param {Context} context */
   setContext(context) {
@@ -47,7 +53,9 @@ export class ShareHost {
   start() {
     const look = () => {
       const part = sharedPart(location.hash);
+      const handout = sharedPart(location.hash, HANDOUT);
       if (part !== null) void this.#openPart(part);
+      else if (handout !== null) void this.openHandout(handout);
     };
     window.addEventListener("hashchange", look);
     look();
@@ -67,6 +75,28 @@ export class ShareHost {
   async openField(trouble = "") {
     const loaded = await this.#load();
     loaded?.dialogs.openField({ t: loaded.t, trouble, open: (text) => void this.#openText(text) });
+  }
+
+  /** Open what the teacher of the class has handed out. @param {string} id */
+  async openHandout(id) {
+    const { store, text } = /** @type {Context} */ (this.#context);
+    const pageText = text("page");
+    /** @param {string} reason */
+    const report = (reason) => {
+      store.dispatch({ type: "notice", level: "error", text: pageText("handout.gone", { reason }), cause: HANDOUT });
+      forgetShared();
+    };
+    try {
+      const headers = { Authorization: `Bearer ${this.#token}` };
+      const answer = await fetch(`class/handouts/${encodeURIComponent(id)}`, { headers });
+      if (!answer.ok) return report(await answer.text());
+      store.dispatch({ type: "solved", cause: HANDOUT });
+      const { kind, name, content } = await answer.json();
+      const bytes = Uint8Array.from(atob(content), (letter) => letter.charCodeAt(0));
+      await this.offer({ kind, name, content: bytes }, pageText("handouts"));
+    } catch {
+      report(pageText("app.notLoaded"));
+    }
   }
 
   /** Let the user decide about an item; own work stays. @param {Item} item @param {string} [heading] */

@@ -256,6 +256,11 @@ export class Actions {
     await this.client.setParameters([{ name: PARAMETERS.draft, value: text }]);
   }
 
+  /** Raise a hand, which the teacher of the class sees, or lower it. @param {boolean} raised */
+  async raiseHand(raised) {
+    this.#report(PARAMETERS.raisedHand, await this.client.setParameters([{ name: PARAMETERS.raisedHand, value: raised }]));
+  }
+
   /** Load a program file, and note in the state what became of it. @param {string} name @param {string} text */
   async loadProgram(name, text) {
     this.store.dispatch({ type: "upload", what: "program", name, text });

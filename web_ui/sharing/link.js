@@ -13,6 +13,8 @@
 export const KINDS = ["program", "playground", "mission"];
 /** Parameter of the fragment. */
 export const PARAMETER = "share";
+/** Parameter of a link to what the teacher of a class has handed out: its id. */
+export const HANDOUT = "handout";
 /** Characters of a link; mail and chat programs cut longer ones. */
 export const LONGEST_LINK = 30_000;
 /** Bytes of a link that a camera still reads from a screen: a QR code of version 30 with error correction L. */
@@ -42,12 +44,12 @@ export async function packed({ kind, name, content }) {
 }
 
 /**
- * The value of `#share=` in an address, or in a text with one; null if there is none.
+ * The value of `#share=`, or of another parameter, in an address or in a text with one; null if there is none.
  *
  * @param {string} text
  */
-export function sharedPart(text) {
-  const found = new RegExp(`[#&]${PARAMETER}=([^&]*)`).exec(text);
+export function sharedPart(text, parameter = PARAMETER) {
+  const found = new RegExp(`[#&]${parameter}=([^&]*)`).exec(text);
   return found === null ? null : found[1];
 }
 

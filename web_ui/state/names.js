@@ -151,6 +151,8 @@ export const PARAMETERS = /** @type {const} */ ({
   noticeLink: "/web_ui.notice_link",
   pupil: "/web_ui.pupil",
   pausedByTeacher: "/web_ui.paused_by_teacher",
+  raisedHand: "/web_ui.raised_hand",
+  handouts: "/web_ui.handouts",
   draft: "/web_ui.draft",
 });
 
