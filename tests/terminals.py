@@ -181,6 +181,7 @@ class Reader:
             "PYTHONPATH": ":".join(path for path in paths if path),
             "ROS_DOMAIN_ID": str(domain),
             "TERM": "dumb",
+            "THYMIO_SIM_CONNECT": f"ws://127.0.0.1:{self._ports['--foxglove-port']}",
         }
         self._terminals: dict[int, Terminal] = {}
         self._left_out: set[int] = set()
