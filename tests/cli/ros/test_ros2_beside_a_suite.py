@@ -188,3 +188,16 @@ def test_launched_processes_find_ros2_and_a_failed_launch_names_packages_that_ne
     assert done.stderr.splitlines()[-1] == (
         "thymio-sim ros2 launch: without ROS 2, programs run in Python only; there are others in fast"
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "reason"),
+    [
+        ("turtle_teleop_key", 2, "turtle_teleop_key: found no terminal"),
+        ("turtlesim_node", 1, "turtlesim_node: found no turtles, since nothing serves /spawn"),
+    ],
+)
+def test_programs_of_a_package_that_a_profile_stands_for_are_there(ros2, name: str, code: int, reason: str) -> None:
+    done = ros2("run", "turtlesim", name)
+    assert done.stderr.splitlines()[-1].startswith(reason)
+    assert done.returncode == code

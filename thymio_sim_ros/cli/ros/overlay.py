@@ -22,6 +22,7 @@ from thymio_sim_ros.access.tokens import TOKEN_VARIABLE
 from thymio_sim_ros.cli.ros.membership import CONNECT_VARIABLE
 from thymio_sim_ros.cli.ros.workspace import Program, SourcePackage, packages, programs
 from thymio_sim_ros.portable_ros.source_packages import INDEX, PREFIXES, SOURCES
+from thymio_sim_ros.ros.profiles import all_profiles
 
 __all__ = ["Overlay"]
 
@@ -113,8 +114,23 @@ class Overlay:
         for name in _OF_SUITE:
             file = self._file(_OURS, name, _NO_SUITE.format(name=name))
             _make_start(ours, name, ["thymio-sim", "node", str(file)])
+        for name, modules in self._of_profiles().items():
+            self._index("packages", name, "")
+            folder = self._folder / "lib" / name
+            folder.mkdir(parents=True)
+            for program, module in modules.items():
+                _make_start(folder, program, ["thymio-sim", "node", "-m", module])
         (self._folder / "bin").mkdir()
         _make_start(self._folder / "bin", "ros2", ["thymio-sim", "ros2"])
+
+    def _of_profiles(self) -> Mapping[str, Mapping[str, str]]:
+        """Modules by package and program, of the packages of other robots that the workspace does not have."""
+        found: dict[str, dict[str, str]] = {}
+        for profile in all_profiles():
+            for package, modules in profile.programs.items():
+                if package not in self._packages:
+                    found.setdefault(package, {}).update(modules)
+        return found
 
     def _index(self, kind: str, name: str, text: str) -> None:
         folder = self._folder / INDEX / kind

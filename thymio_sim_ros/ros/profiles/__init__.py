@@ -268,6 +268,7 @@ class Profile:
         begin: Returns the commands with which a robot begins, when it comes and after a reset.
         each_tick: Called with the world after each tick.
         missing: What the other robot has and this one has not.
+        programs: Modules by names of packages and of their programs, for `thymio-sim ros2 run PACKAGE NAME`.
     """
 
     name: str
@@ -286,6 +287,7 @@ class Profile:
     begin: Callable[[ProfileRobot], Sequence[Command]] | None = None
     each_tick: Callable[[ProfileWorld], None] | None = None
     missing: tuple[Missing, ...] = ()
+    programs: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.node_parameters and not self.node:

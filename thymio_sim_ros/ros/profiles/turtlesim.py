@@ -229,4 +229,7 @@ PROFILE = Profile(
     ),
     begin=_begin,
     each_tick=_watch_walls,
+    programs={
+        "turtlesim": {name: f"thymio_sim_ros.turtlesim.{name}" for name in ("turtle_teleop_key", "turtlesim_node")}
+    },
 )
