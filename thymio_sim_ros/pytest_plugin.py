@@ -258,8 +258,9 @@ def simulation(request: pytest.FixtureRequest, ros: Ros) -> Callable[..., Simula
         playground = (profile and profile.playground) or "base"
         wanted = {"playground": playground, **marked, **parameters}
         wanted["playground"] = _playground(request, wanted["playground"])
-        lidar = wanted.pop("lidar", None)
-        wanted["lidar"] = LidarParams.of(Lidar() if lidar is True else lidar or None)
+        if "lidar" in wanted:
+            lidar = wanted["lidar"]
+            wanted["lidar"] = LidarParams.of(Lidar() if lidar is True else lidar or None)
         wanted.setdefault("log", str(_run_log(request) or ""))
         defaults = replace(of_profile, **wanted)
         graded = _is_graded(request)

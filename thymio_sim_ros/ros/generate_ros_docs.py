@@ -21,8 +21,19 @@ from thymio_sim_ros.ros.compat import tf2_messages
 from thymio_sim_ros.ros.interface import driver_topics, qos, sensor_topics
 from thymio_sim_ros.ros.interface.names import SIDES, is_hidden
 from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
+from thymio_sim_ros.ros.profiles._actions import OWN_ACTIONS
 from thymio_sim_ros.ros.rclpy_ext import parameters
-from thymio_sim_ros.ros.ros_docs_text import AFTER, ALL_IN_ONE, BEFORE, DRIVER, HIDDEN, INTERFACES, QUALITY, RVIZ
+from thymio_sim_ros.ros.ros_docs_text import (
+    ACTIONS,
+    AFTER,
+    ALL_IN_ONE,
+    BEFORE,
+    DRIVER,
+    HIDDEN,
+    INTERFACES,
+    QUALITY,
+    RVIZ,
+)
 from thymio_sim_ros.ros.simulator import robot_endpoints, world_services, world_topics
 from thymio_sim_ros.ros.simulator.parameters import SimulatorParams
 from thymio_sim_ros.ros.simulator.simulation_interfaces.services import OFFERS, PACKAGE, STEPS
@@ -79,6 +90,10 @@ def text() -> str:
         _topics(_of_world()),
         "## Services\n",
         table(("service", "type", "description"), _services()),
+        ACTIONS,
+        table(
+            ("action", "type", "description"), ((f"`{row.name}`", f"`{row.type}`", row.about) for row in OWN_ACTIONS)
+        ),
         INTERFACES,
         table(("service", "type", "description"), _interfaces()),
         "## Quality of service\n",

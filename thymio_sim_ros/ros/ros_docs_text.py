@@ -144,6 +144,27 @@ They work like all other topics. Use their full names (`ros2 topic echo /_raw/gr
 `--include-hidden-topics`. The topics exist whether or not they have subscribers.
 """
 
+ACTIONS = """\
+## Actions
+
+Each robot turns, drives and goes to a pose by actions, with the types of Create 3 (`irobot_create_msgs`). The embedded
+graph has these types; an installed ROS 2 needs the package, without which the actions do not exist.
+
+- A robot pursues one goal at a time; a new goal of any of its actions replaces the old one, which is aborted.
+- A goal is aborted when an obstacle holds the robot for a second, when it falls or is lifted, when the world is reset,
+  and when another command drives its wheels, such as `cmd_vel`. The log of the simulator has the reason, with the name
+  of the obstacle.
+- A goal with NaN, with a speed that is not above 0, farther than 100 m or 100 turns, in an unknown frame, or for a
+  robot that has fallen or is lifted, is rejected; the log has the reason.
+- Angles and distances are those of the wheel odometry. The motion is computed in simulated time, tick by tick: the same
+  goal at the same time is the same run, and the run log has its velocities. After a goal the targets of a program apply
+  again.
+
+```sh
+thymio-sim action send_goal --feedback /rotate_angle irobot_create_msgs/action/RotateAngle "{angle: 1.57}"
+```
+"""
+
 INTERFACES = """\
 ## Services of `simulation_interfaces`
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.files import registry
@@ -45,6 +45,9 @@ __all__ = [
     "named",
     "own_names",
 ]
+
+
+S = TypeVar("S")
 
 
 class ProfileError(ThymioSimError, ValueError):
@@ -90,11 +93,18 @@ class ProfileRobot(Protocol):
         """Whether it touches something."""
 
     @property
+    def touched(self) -> Sequence[str]:
+        """The names of what it touches."""
+
+    @property
     def floor_color(self) -> Color | None:
         """The color of the ground below its middle, drawings included; None without ground."""
 
     def read(self, sensor: str) -> Reading | None:
         """Return the present reading of a sensor without memory."""
+
+    def state(self, kind: type[S]) -> S:
+        """Return the state of an actuator or stimulus, by its type."""
 
     def post(self, command: Command) -> None:
         """Post a command. Raises PlacementError for a place that is not free."""
@@ -269,6 +279,7 @@ class Profile:
         each_tick: Called with the world after each tick.
         missing: What the other robot has and this one has not.
         programs: Modules by names of packages and of their programs, for `thymio-sim ros2 run PACKAGE NAME`.
+        is_optional: Whether rows of missing types are left out without a word.
     """
 
     name: str
@@ -288,6 +299,7 @@ class Profile:
     each_tick: Callable[[ProfileWorld], None] | None = None
     missing: tuple[Missing, ...] = ()
     programs: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    is_optional: bool = False
 
     def __post_init__(self) -> None:
         if self.node_parameters and not self.node:

@@ -27,6 +27,7 @@ from thymio_sim_ros.ros.interface.extra_topics import ExtraTopics
 from thymio_sim_ros.ros.interface.headers import SECOND_NS
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
 from thymio_sim_ros.ros.profiles import Profile
+from thymio_sim_ros.ros.profiles._actions import PLAIN
 from thymio_sim_ros.ros.rclpy_ext import parameters as params
 from thymio_sim_ros.ros.rclpy_ext.connections import Connections
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
@@ -109,15 +110,14 @@ class Simulator:
         self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot, is_localized=is_localized)
         extra = driver_topics.found(self.node) if values.driver_topics else ExtraTopics()
         own = values.endpoint_options
-        replaced = frozenset() if self._profile is None else self._profile.profile.replaces
-        self._robot_options = replace(own, extra=extra, left_out=own.left_out | replaced)
+        self._robot_options = replace(own, extra=extra, left_out=own.left_out | self._profile.profile.replaces)
         if logged is None:
             engine = new_engine(prepared.playground, values, prepared.ground)
         else:
             engine = logged.new_engine(prepared.ground)
-        beside = () if self._profile is None else self._profile.nodes
-        missing = {} if self._profile is None else self._profile.missing
-        self._connections = Connections(self.node, values.switched_off, beside=beside, missing=missing)
+        self._connections = Connections(
+            self.node, values.switched_off, beside=self._profile.nodes, missing=self._profile.missing
+        )
         self.runner = WorldRunner(
             self.node,
             self.params,
@@ -129,8 +129,7 @@ class Simulator:
             engine,
             logged,
         )
-        if self._profile is not None:
-            self._profile.attach(self.runner, self._messages)
+        self._profile.attach(self.runner, self._messages)
         self.runner.start()
         if logged is not None:
             self.runner.step(logged.tick_at(values.replay_from))
@@ -151,14 +150,14 @@ class Simulator:
         names = self.endpoints.robots.names.values()
         robots = ", ".join(full_name(self.node, one.name).rstrip("/") or "/" for one in names)
         where = describe_domain(os.environ, self.node.context.get_domain_id())
-        like = "" if self._profile is None else f"like {self._profile.profile.name}, "
+        name = self._profile.profile.name
+        like = f"like {name}, " if name else ""
         return f"Playground {self.runner.prepared.name}, {like}robots in {robots or 'none'}; {where}"
 
     @property
     def peers(self) -> Sequence[Node]:
         """The ROS nodes that the executor of this one spins as well."""
-        beside = () if self._profile is None else self._profile.nodes
-        return [*beside, *(attached.node for attached in self.attached)]
+        return [*self._profile.nodes, *(attached.node for attached in self.attached)]
 
     def run_once(self, executor: Executor) -> None:
         """Execute the ticks that are due, then handle messages until the next tick with a visible result."""
@@ -187,8 +186,7 @@ class Simulator:
             attached.close()
         if self._interfaces is not None:
             self._interfaces.close()
-        if self._profile is not None:
-            self._profile.close()
+        self._profile.close()
         self.node.destroy_node()
 
     def _repeat(self, parameter: str) -> str:
@@ -202,15 +200,15 @@ class Simulator:
     def _new_robot(self, robot: str, names: RobotNames) -> RobotEndpoints:
         owner = RobotAccess(robot, names, self.runner, self.params, self._messages)
         options, demand = self._robot_options, self.endpoints.demand
-        other = None if self._profile is None else self._profile.open(robot, names)
+        other = self._profile.open(robot, names)
         return RobotEndpoints(
             self.node, names, owner, options=options, demand=demand, control=self.control, other=other
         )
 
-    def _host(self, context: Context, profile: Profile | None) -> ProfileHost | None:
+    def _host(self, context: Context, profile: Profile | None) -> ProfileHost:
         """Create the endpoints of a profile. Raises StartError."""
         try:
-            return None if profile is None else ProfileHost(context, self.node, profile)
+            return ProfileHost(context, self.node, PLAIN if profile is None else profile)
         except StartError:
             self.node.destroy_node()
             raise

@@ -15,7 +15,7 @@ from thymio_sim_ros.sim.model import robot_constants, units
 from thymio_sim_ros.sim.plugin_api.aseba_binding import ActuatorFace, Output
 from thymio_sim_ros.sim.plugin_api.view import ActuatorView
 
-__all__ = ["ACTUATOR", "MotorState", "wanted_speeds"]
+__all__ = ["ACTUATOR", "MotorState", "wanted_speeds", "wheel_speeds"]
 
 _AT_REST = (0.0, 0.0)
 

@@ -53,7 +53,7 @@ def usable(profile: Profile) -> UsableProfile:
     if not absent:
         return UsableProfile(profile, types, ())
     packages = ", ".join(dict.fromkeys(name.partition("/")[0] for name in absent))
-    if not types or import_hook.is_served("rclpy"):
+    if not profile.is_optional and (not types or import_hook.is_served("rclpy")):
         name, reason = next(iter(absent.items()))
         raise ProfileError(
             f"--like {profile.name}: type {name} is not available: {reason}; expected the package {packages}, "
@@ -76,7 +76,7 @@ def usable(profile: Profile) -> UsableProfile:
         services=kept(profile.services),
         actions=kept(profile.actions),
     )
-    return UsableProfile(rest, types, (sentence,))
+    return UsableProfile(rest, types, () if profile.is_optional else (sentence,))
 
 
 def _rows(profile: Profile) -> Iterable[TopicRow | InputRow | ServiceRow | ActionRow]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from thymio_sim_ros.ros.interface.names import RobotNames
 from thymio_sim_ros.sim.model.geometry import Pose, Twist
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from thymio_sim_ros.sim.robot.robot import Robot
 
 __all__ = ["RunningRobot", "RunningWorld"]
+
+S = TypeVar("S")
 
 
 class RunningWorld:
@@ -119,6 +121,11 @@ class RunningRobot:
         return bool(self._robot.body.touching)
 
     @property
+    def touched(self) -> Sequence[str]:
+        """The names of what it touches."""
+        return sorted({contact.other for contact in self._robot.body.touching.values()})
+
+    @property
     def floor_color(self) -> Color | None:
         """The color of the ground below its middle, drawings included; None without ground."""
         pose = self.pose
@@ -127,6 +134,10 @@ class RunningRobot:
     def read(self, sensor: str) -> Reading | None:
         """Return the present reading of a sensor without memory."""
         return self.world.runner.world.read(self.name, sensor)
+
+    def state(self, kind: type[S]) -> S:
+        """Return the state of an actuator or stimulus, by its type."""
+        return self._robot.state(kind)
 
     def post(self, command: Command) -> None:
         """Post a command. Raises PlacementError for a place that is not free."""
