@@ -49,7 +49,7 @@ def steps(world: World, seconds: float) -> None:
 def test_their_names_stay_as_they_are() -> None:
     assert [path.stem for path in SHIPPED] == [
         "arena", "base", "borderless", "calibration", "classroom", "desk", "gate", "line", "line_eight", "line_gaps",
-        "line_gradient", "maze", "obstacle", "table", "turtlesim", "two_robots",
+        "line_gradient", "maze", "obstacle", "table", "turtlebot3", "turtlesim", "two_robots",
     ]  # fmt: skip
 
 

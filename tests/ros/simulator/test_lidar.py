@@ -7,10 +7,10 @@ import math
 import pytest
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
-from tf2_msgs.msg import TFMessage
 
 from tests.ros.simulator.test_node import WALL_AHEAD
 from thymio_sim_ros.ros import combined
+from thymio_sim_ros.ros.compat.tf2_messages import TFMessage
 from thymio_sim_ros.sim.model.lidar import LIDAR_HEIGHT_M, LIDAR_PLACE, Lidar
 from thymio_sim_ros.suite_config import SuiteConfig
 

@@ -171,9 +171,14 @@ class Graph:
 
     def _meet(self, publisher: PublisherEnd, subscription: SubscriptionEnd) -> None:
         """Match two endpoints of a topic, or report to both why they do not match."""
-        if publisher.msg_type.TYPE_NAME != subscription.msg_type.TYPE_NAME:
-            publisher.events.report_other_type()
-            subscription.events.report_other_type()
+        wanted, offered = publisher.msg_type.TYPE_NAME, subscription.msg_type.TYPE_NAME
+        if wanted != offered:
+            # A topic may have two types on purpose: an endpoint with a peer of its own type gets no event.
+            topic = self.topics[publisher.topic_name]
+            if all(wanted != one.msg_type.TYPE_NAME for one in topic.subscriptions):
+                publisher.events.report_other_type()
+            if all(offered != one.msg_type.TYPE_NAME for one in topic.publishers):
+                subscription.events.report_other_type()
             return
         wrong = incompatibilities(publisher.qos_profile, subscription.qos_profile)
         if wrong:

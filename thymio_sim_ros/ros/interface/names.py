@@ -62,9 +62,12 @@ class RobotNames:
         """Return the name of a frame or joint; `relative` is the default one."""
         if relative == MAP_FRAME:
             return self.frames.map
+        return self.fixed_frame(getattr(self.frames, relative, relative))
+
+    def fixed_frame(self, name: str) -> str:
+        """Return the name of a frame with its prefix, as it is."""
         prefix = self.name if self.prefix is None else self.prefix
-        called = getattr(self.frames, relative, relative)
-        return f"{prefix}/{called}" if prefix else called
+        return f"{prefix}/{name}" if prefix else name
 
 
 @dataclass(frozen=True, slots=True)

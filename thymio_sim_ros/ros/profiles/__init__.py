@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.files import registry
 from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.lidar import Lidar
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message
@@ -176,6 +177,7 @@ class InputRow:
 
     `commands` returns the commands of a message, or raises ValueError to reject it; `limit_check` describes what
     will be clamped.
+    `is_second`: the robot has the topic with another type already; both are there.
     """
 
     topic: str
@@ -184,6 +186,7 @@ class InputRow:
     about: str = ""
     kind: str = "command"
     limit_check: Callable[[Any], str] = lambda _message: ""
+    is_second: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -272,6 +275,8 @@ class Profile:
         playground, program: What is loaded unless the user names something else; empty: as always.
         robots: Names of the robots in ROS, in the order of the playground; empty: as always.
         parameters: Parameters of the simulator that have other defaults.
+        lidar: That of the robots, unless the user chooses another one; None: none.
+        frames: Frames that are fixed at the origin of the robot.
         replaces: Topics of a robot that do not exist, since the profile has the name.
         topics, inputs, services, actions: The rows.
         node_parameters: Parameters of `node`.
@@ -289,6 +294,8 @@ class Profile:
     program: str = ""
     robots: tuple[str, ...] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    lidar: Lidar | None = None
+    frames: tuple[str, ...] = ()
     replaces: frozenset[str] = frozenset()
     topics: tuple[TopicRow, ...] = ()
     inputs: tuple[InputRow, ...] = ()

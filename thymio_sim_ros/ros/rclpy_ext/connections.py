@@ -139,7 +139,10 @@ class _OwnNames:
 
     def __init__(self, endpoints: Sequence[_OwnEndpoint]) -> None:
         self.endpoints = endpoints
-        self.types = dict(map(_name_and_type, endpoints))
+        self.pairs = frozenset(map(_name_and_type, endpoints))
+        """Names with types: a profile may have a topic with two."""
+        self.types = dict(map(_name_and_type, reversed(endpoints)))
+        """The first type by name."""
         self._by_word: dict[str, list[str]] = {}
         for name in self.types:
             if (word := _last(name)) not in _OF_EVERY_NODE:
@@ -242,14 +245,15 @@ class Connections:
         suspects: set[_Endpoint] = set()
         misfits, self._misfits = self._misfits, {}
         for endpoint in self._others():
-            types = self._own_names(endpoint.query).types
+            names = self._own_names(endpoint.query)
+            types = names.types
             if endpoint.topic not in types:
                 if not self._may_be_wrong(endpoint) or getattr(self._node, endpoint.query.count_peers)(endpoint.topic):
                     continue
                 suspects.add(endpoint)
                 if is_settled or endpoint in self._suspects:
                     found.append(self._wrong_name(endpoint))
-            elif endpoint.type != types[endpoint.topic]:
+            elif (endpoint.topic, endpoint.type) not in names.pairs:
                 found.append(wrong_type(endpoint.query.side, endpoint.topic, endpoint.full_node, endpoint.type, types))
             else:
                 self._misfits[endpoint] = misfits[endpoint] if endpoint in misfits else self._wrong_qos(endpoint)

@@ -44,16 +44,21 @@ class HasPeers(Protocol):
 class PeerContext:
     """A context, and so a participant, of its own. Its nodes do not match each other either."""
 
-    def __init__(self, args: Sequence[str]) -> None:
-        """`args`: the ROS arguments of the process."""
-        self._args = list(args)
+    def __init__(self, args: Sequence[str], domain_id: int | None = None) -> None:
+        """`args`: the ROS arguments of the process. `domain_id`: None for that of the environment."""
+        self._args, self._domain_id = list(args), domain_id
         self._context = Context()
         self._nodes: list[Node] = []
 
     def node(self, name: str) -> Node:
         """Create a node that only publishes and subscribes; `name` begins with `_`, which hides it from tools."""
         if not self._nodes:
-            rclpy.init(args=self._args, context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+            rclpy.init(
+                args=self._args,
+                context=self._context,
+                domain_id=self._domain_id,
+                signal_handler_options=SignalHandlerOptions.NO,
+            )
         created = Node(
             name,
             context=self._context,

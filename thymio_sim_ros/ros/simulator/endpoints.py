@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from rclpy.node import Node
@@ -42,15 +42,16 @@ class SimulatorEndpoints:
         make: Callable[[str, RobotNames], RobotEndpoints],
         *,
         is_localized: bool = True,
+        frames: Sequence[str] = (),
     ) -> None:
         """`control` publishes the topics of the world; `make` creates the endpoints of a robot from its name in the
-        world and its ROS names. `is_localized`: see `TransformOptions`.
+        world and its ROS names. `is_localized`, `frames`: see `TransformOptions`.
         """
         self.clock = ClockPublisher(node, is_on=params.publish_clock, rate_hz=params.clock_rate)
         self.world = WorldEndpoints(node, control, publish_map=params.publish_map, map_frame=params.map_frame)
         self.demand = SubscriberDemand(params.published_periods_ns)
         self.robots = RobotEndpointSet(make, params.naming)
-        options = replace(params.transform_options, is_localized=is_localized)
+        options = replace(params.transform_options, is_localized=is_localized, frames=tuple(frames))
         self._transforms = Transforms(node, self.demand, options)
         self._polled_ns = self._poll_period_ns = 0
 

@@ -107,7 +107,14 @@ class Simulator:
         self.attached: Sequence[AnnouncedNode] = ()
         """Nodes that the thread of this one runs as well, since they use the engine."""
         self._messages = MessageReports(self.node)
-        self.endpoints = SimulatorEndpoints(self.node, self.control, values, self._new_robot, is_localized=is_localized)
+        self.endpoints = SimulatorEndpoints(
+            self.node,
+            self.control,
+            values,
+            self._new_robot,
+            is_localized=is_localized,
+            frames=self._profile.profile.frames,
+        )
         extra = driver_topics.found(self.node) if values.driver_topics else ExtraTopics()
         own = values.endpoint_options
         self._robot_options = replace(own, extra=extra, left_out=own.left_out | self._profile.profile.replaces)

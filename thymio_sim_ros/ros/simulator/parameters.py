@@ -257,7 +257,9 @@ class SimulatorParams:
     def like(self, profile: Profile) -> SimulatorParams:
         """Return the parameters with those that a profile needs."""
         names: Mapping[str, Any] = {"robot_names": list(profile.robots)} if profile.robots else {}
-        return replace(self, **names, **profile.parameters)
+        has_other = profile.lidar is not None and not self.lidar.enabled
+        lidar: Mapping[str, Any] = {"lidar": LidarParams.of(profile.lidar)} if has_other else {}
+        return replace(self, **names, **lidar, **profile.parameters)
 
     def renamed(self, playground: Playground) -> Playground:
         """Return the playground with robots renamed as in `robot_names`. Raises StartError for an invalid name."""

@@ -6,10 +6,11 @@ world. A topic without subscribers costs no more than being polled for them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import String
@@ -63,6 +64,8 @@ _SUM_OF_RANGES = (
     "may be computed from ranges: one without an obstacle is +inf, and inf - inf is nan. For code written for the"
     " driver, where it is -1, start `thymio-sim --out-of-range driver`, or --ros-args -p out_of_range:=driver"
 )
+_ANY_TYPE = {"event_callbacks": SubscriptionEventCallbacks(incompatible_type=lambda _event: None)}
+"""For topics that may have two types: rclpy would warn of publishers of the other one."""
 _INT_IN_FLOAT = (
     "an int in a float field, such as linear.x = 1 in place of 1.0? ROS_PYTHON_CHECK_FIELDS=1 (thymio-sim env) shows"
     " the line"
@@ -132,7 +135,10 @@ class OtherEndpoints(Protocol):
 
     node: Node
     """The node that has them."""
-    topics: ExtraTopics
+    rows: Mapping[str, Sequence[Row]]
+    """Published topics by sensor."""
+    inputs: Sequence[tuple[Node, RobotInput]]
+    """Inputs with the nodes that have them."""
 
     def reset(self) -> None:
         """Follow a reset of the world, or another world."""
@@ -183,7 +189,7 @@ class RobotEndpoints:
                 if row.topic not in options.left_out:
                     self._open(self._node_of(row), row, sensor, options.every_ns.get(row.topic, row.every_ns))
             if other is not None:
-                for row in other.topics.rows.get(sensor.name, ()):
+                for row in other.rows.get(sensor.name, ()):
                     self._open(other.node, row, sensor, row.every_ns)
         self._description: Publisher[String] | None = None
         if DESCRIPTION not in options.left_out:
@@ -197,16 +203,20 @@ class RobotEndpoints:
             for robot_input in known
             if robot_input.topic not in options.left_out
         ]
-        if other is not None:
-            inputs += [(other.node, robot_input) for robot_input in other.topics.inputs]
+        others = () if other is None else other.inputs
+        second = {robot_input.topic for _, robot_input in others}
         self._subscriptions: list[tuple[Any, Any]] = [
             (
                 chosen,
                 chosen.create_subscription(
-                    robot_input.type, names.topic(robot_input.topic), self._handler(robot_input), robot_input.profile
+                    robot_input.type,
+                    names.topic(robot_input.topic),
+                    self._handler(robot_input),
+                    robot_input.profile,
+                    **(_ANY_TYPE if robot_input.topic in second else {}),
                 ),
             )
-            for chosen, robot_input in inputs
+            for chosen, robot_input in (*inputs, *others)
         ]
         handlers = {"is_ready": lambda _request, response: response, "reset_odometry": self._reset_odometry}
         self._services = [

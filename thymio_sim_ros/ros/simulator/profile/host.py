@@ -14,7 +14,6 @@ from rclpy.parameter import Parameter
 from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.command_checks import CommandError
 from thymio_sim_ros.ros.interface.convert_readings import ConvertOptions
-from thymio_sim_ros.ros.interface.extra_topics import ExtraTopics
 from thymio_sim_ros.ros.interface.names import RobotNames, full_name
 from thymio_sim_ros.ros.interface.robot_inputs import InputContext, RobotInput
 from thymio_sim_ros.ros.interface.sensor_topics import Row
@@ -23,6 +22,7 @@ from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.message_reports import MessageReports
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.rclpy_ext.parameter_node import parameter_node
+from thymio_sim_ros.ros.rclpy_ext.peers import PeerContext
 from thymio_sim_ros.ros.simulator.profile.goals import RobotGoals
 from thymio_sim_ros.ros.simulator.profile.types import UsableProfile, usable
 from thymio_sim_ros.ros.simulator.profile.world import RunningRobot, RunningWorld
@@ -39,7 +39,8 @@ class _RobotEndpoints:
 
     host: ProfileHost
     node: Node
-    topics: ExtraTopics
+    rows: Mapping[str, Sequence[Row]]
+    inputs: Sequence[tuple[Node, RobotInput]]
     robot: RunningRobot
     services: list[Any]
     goals: RobotGoals | None
@@ -81,12 +82,18 @@ class ProfileHost:
             raise StartError(str(error)) from error
         self.profile = self._usable.profile
         self._has_node = bool(profile.node)
+        self._peers: PeerContext | None = None
         self.node = parameter_node(profile.node, context=context) if self._has_node else simulator
         try:
             _declare(self.node, self.profile.node_parameters)
         except StartError:
             self.close()
             raise
+        self._second = self.node
+        """Has the topics of which another node has the name: a participant has one type for a name."""
+        if any(row.is_second for row in self.profile.inputs):
+            self._peers = PeerContext([], simulator.context.get_domain_id())
+            self._second = self._peers.node(f"_{profile.name}")
         for sentence in self._usable.left_out:
             self.node.get_logger().warning(sentence)
         self._world: RunningWorld
@@ -96,7 +103,8 @@ class ProfileHost:
     @property
     def nodes(self) -> tuple[Node, ...]:
         """The nodes that it has besides the simulator's."""
-        return (self.node,) if self._has_node else ()
+        own = (self.node,) if self._has_node else ()
+        return own if self._second is self.node else (*own, self._second)
 
     @property
     def missing(self) -> Mapping[str, str]:
@@ -117,10 +125,13 @@ class ProfileHost:
         rows: dict[str, list[Row]] = {}
         for topic in profile.topics:
             rows.setdefault(topic.sensor, []).append(_row(topic, types[topic.type], running))
-        topics = ExtraTopics(rows, [_input(row, types[row.type], running) for row in profile.inputs])
+        inputs = [
+            (self._second if row.is_second else self.node, _input(row, types[row.type], running))
+            for row in profile.inputs
+        ]
         services = [self._serve(row, names.topic(row.name), running) for row in profile.services if not row.is_of_world]
         goals = RobotGoals(self.node, running, profile.actions, types) if profile.actions else None
-        made = _RobotEndpoints(self, self.node, topics, running, services, goals)
+        made = _RobotEndpoints(self, self.node, rows, inputs, running, services, goals)
         self._robots.append(made)
         made.begin()
         return made
@@ -132,6 +143,8 @@ class ProfileHost:
 
     def close(self) -> None:
         """Destroy the node."""
+        if self._peers is not None:
+            self._peers.close()
         if self._has_node:
             self.node.destroy_node()
 

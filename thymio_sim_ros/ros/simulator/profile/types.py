@@ -94,7 +94,8 @@ def _check_names(profile: Profile) -> None:
     own = {row.topic for sensor in all_sensors() for row in sensor_topics.rows_of(sensor)}
     own |= {robot_input.topic for robot_input in robot_inputs()} | SERVICES.keys()
     taken = own - profile.replaces
-    counts = Counter((type(row) in (TopicRow, InputRow), _name_of(row)) for row in _rows(profile))
+    rows = [row for row in _rows(profile) if not (isinstance(row, InputRow) and row.is_second)]
+    counts = Counter((type(row) in (TopicRow, InputRow), _name_of(row)) for row in rows)
     for (_, name), count in counts.items():
         if name in taken:
             raise ProfileError(

@@ -21,7 +21,7 @@ from thymio_sim_ros.ros.interface import qos
 from thymio_sim_ros.ros.interface.names import MAP_FRAME, SIDES, RobotNames
 from thymio_sim_ros.ros.interface.rotations import rotation, wheel_rotation
 from thymio_sim_ros.ros.interface.subscriber_demand import SubscriberDemand, TopicDemand
-from thymio_sim_ros.ros.simulator.visualization.urdf import fixed_frames, wheel_position
+from thymio_sim_ros.ros.simulator.visualization.urdf import FixedFrame, fixed_frames, wheel_position
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose, Tilt
 from thymio_sim_ros.sim.model.readings import PoseReading, Reading
 
@@ -32,7 +32,7 @@ __all__ = ["POSE_SENSOR", "TransformOptions", "Transforms", "frames_of", "origin
 class TransformOptions:
     """Whether to publish `map → odom`, wheel frames and fixed frames, and whether in each robot's namespace.
 
-    `has_lidar`: whether the robots have a lidar.
+    `has_lidar`: whether the robots have a lidar. `frames`: further frames that are fixed at the robot's origin.
     `is_localized`: whether `map → odom` compensates the drift of the odometry; else it stays as at the start.
     """
 
@@ -41,6 +41,7 @@ class TransformOptions:
     publish_static: bool = True
     namespaced: bool = False
     has_lidar: bool = False
+    frames: tuple[str, ...] = ()
     is_localized: bool = True
 
 
@@ -128,8 +129,11 @@ class Transforms:
         for names in robots:
             base = names.frame("base_link")
             fixed = [
-                Transform(0, base, names.frame(frame.name), frame.position, frame.quaternion)
-                for frame in fixed_frames(has_lidar=self._options.has_lidar)
+                Transform(0, base, names.fixed_frame(frame.name), frame.position, frame.quaternion)
+                for frame in (
+                    *fixed_frames(has_lidar=self._options.has_lidar, base=names.frames.base_link),
+                    *(FixedFrame(name, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) for name in self._options.frames),
+                )
             ]
             self._static.add(self._topic(names, self._static), fixed)
         self._static.flush()

@@ -44,9 +44,11 @@ class FixedFrame:
         )
 
 
-def fixed_frames(*, has_lidar: bool = False) -> tuple[FixedFrame, ...]:
-    """Return the frames of the simulated sensors, x along the viewing direction."""
-    frames = [FixedFrame("base_footprint", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
+def fixed_frames(*, has_lidar: bool = False, base: str = "base_link") -> tuple[FixedFrame, ...]:
+    """Return the frames of the simulated sensors, x along the viewing direction; `base` is that of the robot."""
+    # A robot whose frame is called base_footprint has a base_link at the same place.
+    other = "base_link" if base == "base_footprint" else "base_footprint"
+    frames = [FixedFrame(other, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
     for name, (x_m, y_m, yaw_rad) in zip(PROXIMITY, robot_constants.PROXIMITY_POSES, strict=True):
         frames.append(
             FixedFrame(f"proximity_{name}_link", (x_m, y_m, robot_constants.PROXIMITY_HEIGHT_M), (0.0, 0.0, yaw_rad))
@@ -96,9 +98,9 @@ def urdf(names: RobotNames, *, has_lidar: bool = False) -> str:
             f'<joint name="{joint}" type="continuous"><parent link="{names.frame("base_link")}"/>',
             f'<child link="{link}"/><origin xyz="{x} {y} {z}"/><axis xyz="0 1 0"/></joint>',
         ]
-    for frame in fixed_frames(has_lidar=has_lidar):
+    for frame in fixed_frames(has_lidar=has_lidar, base=names.frames.base_link):
         xyz, rpy = (" ".join(f"{v:.6g}" for v in vector) for vector in (frame.position, frame.rotation))
-        link = names.frame(frame.name)
+        link = names.fixed_frame(frame.name)
         parts.append(f'<link name="{link}"/>')
         parts.append(
             f'<joint name="{link}_joint" type="fixed"><parent link="{names.frame("base_link")}"/>'

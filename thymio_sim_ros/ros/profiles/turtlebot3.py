@@ -1,0 +1,141 @@
+"""TurtleBot3, the robot of many courses with a laser scanner: a Thymio with a lidar is the robot.
+
+Names, types, frames and joints are those of a TurtleBot3 Burger. The field has nine columns, as its usual simulation.
+A velocity is valid until the next one, and clamped on its curve: a Thymio is slower, 0.166 m/s in place of 0.22.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from thymio_sim_ros.ros.profiles import InputRow, Missing, Profile, ProfileRobot, ProfileWorld, ServiceRow, TopicRow
+from thymio_sim_ros.ros.profiles._actions import OWN_ACTIONS
+from thymio_sim_ros.ros.profiles._body import battery, imu
+from thymio_sim_ros.sim.commands import BodyTwist, Command, PlaySystemSound, StopSound
+from thymio_sim_ros.sim.model.lidar import Lidar
+
+if TYPE_CHECKING:
+    from thymio_sim_ros.ros.interface.robot_inputs import InputContext
+    from thymio_sim_ros.sim.model.readings import BatteryReading, MotorReading, PoseReading
+
+_ENCODER_STEPS = 4096
+"""Steps of an encoder for each turn of its wheel."""
+_SOUNDS = {1: 0, 2: 5, 3: 5, 4: 1, 5: 1}
+"""System sounds of the robot for the numbers of `turtlebot3_msgs/srv/Sound`; 0 is silence."""
+
+
+def _imu(kind: Any, reading: PoseReading, robot: ProfileRobot) -> Any:
+    return imu("imu_link", reading, robot, kind)
+
+
+def _battery(_kind: Any, reading: BatteryReading, robot: ProfileRobot) -> Any:
+    return battery("", reading, robot)
+
+
+def _sensor_state(kind: Any, reading: MotorReading, robot: ProfileRobot) -> Any:
+    from thymio_sim_ros.ros.interface.headers import stamped
+    from thymio_sim_ros.sim.stimuli.battery import BatteryState
+
+    left, right = (round(angle / math.tau * _ENCODER_STEPS) for angle in reading.angles_rad)
+    message = kind(
+        bumper=int(robot.is_touching),
+        torque=True,
+        left_encoder=left,
+        right_encoder=right,
+        battery=robot.state(BatteryState).volts,
+    )
+    return stamped(message, reading.stamp_ns, "")
+
+
+def _stamped(message: Any, context: InputContext, _robot: ProfileRobot) -> Sequence[Command]:
+    from thymio_sim_ros.ros.interface.command_checks import body_twist
+
+    return (body_twist(message.twist, context.timeout_ns),)
+
+
+def _too_fast(message: Any) -> str:
+    from thymio_sim_ros.ros.interface import saturation
+
+    return saturation.twist(message.twist)
+
+
+def _sound(request: Any, response: Any, robot: ProfileRobot) -> None:
+    if request.value and request.value not in _SOUNDS:
+        response.message = f"value is {request.value}, expected 0 to {max(_SOUNDS)}"
+        raise ValueError(response.message)
+    robot.post(PlaySystemSound(_SOUNDS[request.value]) if request.value else StopSound())
+    response.success = True
+
+
+def _motor_power(request: Any, response: Any, robot: ProfileRobot) -> None:
+    if not request.data:
+        robot.post(BodyTwist(0.0, 0.0))
+    response.success = True
+    response.message = "motors are on" if request.data else "wheels stand still until the next velocity"
+
+
+def _reset(_request: Any, _response: Any, world: ProfileWorld) -> None:
+    world.reset()
+
+
+_NO_MAP = "start a mapping or navigation node of your own; thymio-sim --ros-args -p publish_map:=true publishes /map"
+
+PROFILE = Profile(
+    "turtlebot3",
+    "a TurtleBot3 with /scan, /imu and its frames, among nine columns",
+    playground="turtlebot3",
+    program="none",
+    parameters={
+        "cmd_vel_timeout": 0.0,
+        "robot_frame": "base_footprint",
+        "left_wheel_joint": "wheel_left_joint",
+        "right_wheel_joint": "wheel_right_joint",
+    },
+    lidar=Lidar(),
+    frames=("imu_link",),
+    replaces=frozenset({"imu"}),
+    topics=(
+        TopicRow("imu", "sensor_msgs/msg/Imu", "pose", _imu, "orientation (yaw 0 at the start), rates, accelerations"),
+        TopicRow(
+            "battery_state", "sensor_msgs/msg/BatteryState", "battery", _battery, "V, charge 0…1, charging or not"
+        ),
+        TopicRow(
+            "sensor_state",
+            "turtlebot3_msgs/msg/SensorState",
+            "motor",
+            _sensor_state,
+            "bumper 1 while it touches something, wheel encoders of 4096 steps, V; the rest is 0",
+            every_ns=50_000_000,
+        ),
+    ),
+    inputs=(
+        InputRow(
+            "cmd_vel",
+            "geometry_msgs/msg/TwistStamped",
+            _stamped,
+            "as Twist; both types are there, since TurtleBot3 has this one since ROS 2 Jazzy",
+            limit_check=_too_fast,
+            is_second=True,
+        ),
+    ),
+    services=(
+        ServiceRow("sound", "turtlebot3_msgs/srv/Sound", _sound, "play a sound of the robot, 0…5"),
+        ServiceRow("motor_power", "std_srvs/srv/SetBool", _motor_power, "stop the wheels"),
+        ServiceRow("/reset_simulation", "std_srvs/srv/Empty", _reset, "begin anew, with time 0", is_of_world=True),
+        ServiceRow("/reset_world", "std_srvs/srv/Empty", _reset, "begin anew, with time 0", is_of_world=True),
+    ),
+    actions=OWN_ACTIONS,
+    missing=(
+        Missing("magnetic_field", "The simulated robot has no magnetometer: use the orientation of imu."),
+        Missing("camera/image_raw", "The simulated robot has no camera."),
+        Missing("camera/image_raw/compressed", "The simulated robot has no camera."),
+        Missing("/map", f"There is no SLAM in the simulator: {_NO_MAP}"),
+        Missing("navigate_to_pose", "Nav2 does not run here: use the action navigate_to_position, or start Nav2."),
+        Missing("/spawn_entity", "Gazebo does not run here: use thymio-sim --playground, or /simulator/spawn."),
+        Missing("/delete_entity", "Gazebo does not run here: use /simulator/remove."),
+        Missing("/pause_physics", "Gazebo does not run here: call /simulator/pause with data: true."),
+        Missing("/unpause_physics", "Gazebo does not run here: call /simulator/pause with data: false."),
+    ),
+)
