@@ -37,6 +37,7 @@ NOT_IN_WHEELS = {
     "example_interfaces",
     "irobot_create_msgs",
     "tf2_msgs",
+    "turtlebot3_msgs",
     "turtlesim",
 }
 OPTIONAL = {one for one in ("test_msgs",) if PathFinder.find_spec(one) is None}  # not what our hook serves

@@ -10,6 +10,7 @@ from tests.sim.fake_view import FakeBody
 from thymio_sim_ros.sim.mechanics import motor_control
 from thymio_sim_ros.sim.mechanics import wheels as mechanics
 from thymio_sim_ros.sim.mechanics.wheels import Wheels
+from thymio_sim_ros.sim.model.geometry import Pose
 from thymio_sim_ros.sim.model.noise import NoiseKeys
 from thymio_sim_ros.sim.model.robot_constants import SLIP
 
@@ -91,5 +92,5 @@ def test_odometry_follows_arcs_and_can_be_reset() -> None:
         wheels.roll(way[0] / 10, way[1] / 10)
     odometry = wheels.odometry
     assert (odometry.x_m, odometry.y_m, odometry.yaw_rad) == pytest.approx((0.2, 0.2, math.pi / 2), abs=1e-6)
-    wheels.reset_odometry()
+    wheels.set_odometry(Pose(0.0, 0.0, 0.0))
     assert wheels.odometry.x_m == wheels.odometry.yaw_rad == 0.0

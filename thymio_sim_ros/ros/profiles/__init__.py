@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from thymio_sim_ros.sim.model.geometry import Pose, Twist
     from thymio_sim_ros.sim.model.primitives import Color
     from thymio_sim_ros.sim.model.readings import Reading
+    from thymio_sim_ros.sim.physics import Contact
     from thymio_sim_ros.sim.playground.reader import RobotStart
 
 __all__ = [
@@ -94,8 +95,8 @@ class ProfileRobot(Protocol):
         """Whether it touches something."""
 
     @property
-    def touched(self) -> Sequence[str]:
-        """The names of what it touches."""
+    def contacts(self) -> Sequence[Contact]:
+        """Where it touches something, in order of the names."""
 
     @property
     def floor_color(self) -> Color | None:

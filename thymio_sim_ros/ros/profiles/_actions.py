@@ -27,7 +27,7 @@ from thymio_sim_ros.sim.model.clock import TICK_NS
 from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 from thymio_sim_ros.sim.model.robot_constants import MAX_SPEED_M_S
 
-__all__ = ["DRIVE_ARC", "OWN_ACTIONS", "PLAIN", "LawMotion", "check_number", "pose_by_odometry"]
+__all__ = ["DRIVE_ARC", "OWN_ACTIONS", "PLAIN", "LawMotion", "MotorGuard", "check_number", "pose_by_odometry"]
 
 L = TypeVar("L", bound=Law)
 
@@ -36,33 +36,58 @@ MOST_M, MOST_RAD = 100.0, 100 * math.tau
 TAKEN = "another command drives the wheels"
 
 
+class MotorGuard:
+    """Drives the wheels for a motion, and notices what ends it: a hand, another command, or an obstacle."""
+
+    def __init__(self, robot: ProfileRobot) -> None:
+        self._robot = robot
+        self._stall = StallDetector(robot.odometry)
+        self._last: BodyTwist | None = None
+        """The velocity of the last tick."""
+        self._is_taken = False
+
+    def check(self) -> Ended | None:
+        """Return why the motion has ended; None if it goes on. Called once after each tick."""
+        robot, last = self._robot, self._last
+        if last is None:
+            return None
+        if robot.is_lifted:
+            return Ended("the robot was lifted")
+        if robot.state(MotorState).speeds_m_s != wheel_speeds(last):
+            self._is_taken = True
+            return Ended(TAKEN)
+        if self._stall.update(robot.odometry, Velocity(last.linear_m_s, last.angular_rad_s)):
+            touched = ", ".join(dict.fromkeys(f"'{contact.other}'" for contact in robot.contacts))
+            return Ended(f"the robot is blocked by {touched}" if touched else "the robot cannot move")
+        return None
+
+    def drive(self, twist: BodyTwist) -> None:
+        """Set the velocity of the next tick."""
+        self._last = twist
+        self._robot.post(twist)
+
+    def stop(self) -> None:
+        """Stop the wheels, unless another command drives them. The targets of a program apply again."""
+        if not self._is_taken:
+            self._robot.post(BodyTwist(0.0, 0.0, TICK_NS))
+
+
 class LawMotion:
-    """Drives a robot by a law, until the goal is reached, something holds the robot, or another command drives it."""
+    """Drives a robot by a law until the goal is reached, or the guard ends it."""
 
     def __init__(self, robot: ProfileRobot, law: L, feedback: Callable[[type[Any], L], Any]) -> None:
         """`feedback` makes the feedback of a class from the law."""
         self._robot, self._law, self._feedback = robot, law, feedback
-        self._stall = StallDetector(robot.odometry)
-        self._wanted: Velocity | None = None
-        """The velocity of the last tick."""
-        self._is_taken = False
+        self._guard = MotorGuard(robot)
 
     def step(self) -> Ended | None:
         """See `Motion`."""
-        robot = self._robot
-        if self._wanted is not None:
-            if robot.is_lifted:
-                return Ended("the robot was lifted")
-            if self._is_driven_otherwise(self._wanted):
-                self._is_taken = True
-                return Ended(TAKEN)
-            if self._stall.update(robot.odometry, self._wanted):
-                touched = ", ".join(f"'{name}'" for name in robot.touched)
-                return Ended(f"the robot is blocked by {touched}" if touched else "the robot cannot move")
-        wanted = self._wanted = self._law.velocity(robot.odometry)
+        if (ended := self._guard.check()) is not None:
+            return ended
+        wanted = self._law.velocity(self._robot.odometry)
         if wanted is None:
             return Ended()
-        robot.post(BodyTwist(wanted.linear_m_s, wanted.angular_rad_s))
+        self._guard.drive(BodyTwist(wanted.linear_m_s, wanted.angular_rad_s))
         return None
 
     def feedback(self, kind: type[Any]) -> Any:
@@ -82,13 +107,8 @@ class LawMotion:
         return message
 
     def stop(self) -> None:
-        """See `Motion`. The targets of a program apply again."""
-        if not self._is_taken:
-            self._robot.post(BodyTwist(0.0, 0.0, TICK_NS))
-
-    def _is_driven_otherwise(self, wanted: Velocity) -> bool:
-        posted = wheel_speeds(BodyTwist(wanted.linear_m_s, wanted.angular_rad_s))
-        return self._robot.state(MotorState).speeds_m_s != posted
+        """See `Motion`."""
+        self._guard.stop()
 
 
 def check_number(value: float, what: str, *, most: float = math.inf, is_positive: bool = False) -> float:

@@ -13,6 +13,7 @@ from thymio_sim_ros.sim.commands.driving import (
     MotorTargets,
     ResetOdometry,
     SetMotorModel,
+    SetOdometry,
     WheelVelocities,
 )
 from thymio_sim_ros.sim.commands.lights import (
@@ -100,6 +101,7 @@ __all__ = [
     "SetLeds",
     "SetMotorModel",
     "SetNoiseLevel",
+    "SetOdometry",
     "SetPen",
     "SetProximity",
     "SetSoundThreshold",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 __all__ = [
@@ -11,6 +12,7 @@ __all__ = [
     "MotorTargets",
     "ResetOdometry",
     "SetMotorModel",
+    "SetOdometry",
     "WheelVelocities",
 ]
 
@@ -60,4 +62,17 @@ class ResetOdometry:
     """Reset the wheel odometry to zero at the present position."""
 
 
-Driving = MotorTargets | WheelVelocities | BodyTwist | SetMotorModel | ResetOdometry
+@dataclass(frozen=True, slots=True)
+class SetOdometry:
+    """Let the wheel odometry go on from a pose, in m and rad. Raises ValueError for values that are not finite."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+
+    def __post_init__(self) -> None:
+        if not all(map(math.isfinite, (self.x_m, self.y_m, self.yaw_rad))):
+            raise ValueError(f"odometry {self.x_m}, {self.y_m} m, {self.yaw_rad} rad found, expected finite numbers")
+
+
+Driving = MotorTargets | WheelVelocities | BodyTwist | SetMotorModel | ResetOdometry | SetOdometry

@@ -94,10 +94,10 @@ class Wheels:
             state.output[wheel] = state.integral[wheel] = state.current[wheel] = 0.0
             state.zero_ticks[wheel] = state.high_ticks[wheel] = state.is_halved[wheel] = 0
 
-    def reset_odometry(self) -> None:
-        """Set the odometry to zero."""
+    def set_odometry(self, pose: Pose) -> None:
+        """Let the odometry go on from a pose."""
         state, index = self._body.state, self._body.index
-        state.odometry_x[index] = state.odometry_y[index] = state.odometry_yaw[index] = 0.0
+        state.odometry_x[index], state.odometry_y[index], state.odometry_yaw[index] = pose.x_m, pose.y_m, pose.yaw_rad
 
 
 def twist_of(left_m_s: float, right_m_s: float) -> Twist:

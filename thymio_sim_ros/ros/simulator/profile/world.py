@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from thymio_sim_ros.ros.simulator.world_runner import WorldRunner
     from thymio_sim_ros.sim.commands import Command
     from thymio_sim_ros.sim.model.readings import Reading
+    from thymio_sim_ros.sim.physics import Contact
     from thymio_sim_ros.sim.robot.robot import Robot
 
 __all__ = ["RunningRobot", "RunningWorld"]
@@ -121,9 +122,9 @@ class RunningRobot:
         return bool(self._robot.body.touching)
 
     @property
-    def touched(self) -> Sequence[str]:
-        """The names of what it touches."""
-        return sorted({contact.other for contact in self._robot.body.touching.values()})
+    def contacts(self) -> Sequence[Contact]:
+        """Where it touches something, in order of the names."""
+        return sorted(self._robot.body.touching.values(), key=lambda contact: contact.other)
 
     @property
     def floor_color(self) -> Color | None:
