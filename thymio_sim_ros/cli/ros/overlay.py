@@ -118,8 +118,8 @@ class Overlay:
             self._index("packages", name, "")
             folder = self._folder / "lib" / name
             folder.mkdir(parents=True)
-            for program, module in modules.items():
-                _make_start(folder, program, ["thymio-sim", "node", "-m", module])
+            for program_name, module in modules.items():
+                _make_start(folder, program_name, ["thymio-sim", "node", "-m", module])
         (self._folder / "bin").mkdir()
         _make_start(self._folder / "bin", "ros2", ["thymio-sim", "ros2"])
 
