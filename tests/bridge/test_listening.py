@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import socket
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -70,3 +71,17 @@ def test_connections_of_a_listening_socket_notice_that_their_peer_has_vanished()
                 )
                 assert idle_s + period_s * probes <= 60
                 assert 0 < connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) <= 60_000
+
+
+def test_the_system_keeps_little_of_a_connection_that_is_not_read() -> None:
+    (listener,) = listen("127.0.0.1", 0)
+    with listener, socket.create_connection(listener.getsockname()) as client:
+        served, _ = listener.accept()
+        sending = threading.Thread(target=client.sendall, args=(bytes(400_000_000),))
+        sending.start()
+        with served:
+            waiting = 400_000_000  # read fast, which makes the system give more room unless it is limited
+            while waiting > 0:
+                waiting -= len(served.recv(256 * 1024))
+            sending.join()
+            assert served.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) <= 128 * 1024

@@ -11,6 +11,10 @@ __all__ = ["check_free", "detect_lost_peer", "listen"]
 _BACKLOG = 128
 """Connections that the kernel queues until they are accepted."""
 
+_RECEIVE_BUFFER = 64 * 1024
+"""What the system keeps of a connection that is not read, bytes (Linux: twice as much, and without a limit 6 MB and
+more): the messages of a client wait behind what its flooding publisher has sent before."""
+
 _LOOPBACK = ("127.0.0.1", "::1")
 """Addresses of `localhost`: a browser may try either first."""
 
@@ -96,6 +100,7 @@ def _bound(address: str, port: int, *, do_listen: bool) -> socket.socket:
         bound.bind(endpoint)
         if do_listen:
             detect_lost_peer(bound)
+            bound.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)  # connections inherit it
             bound.listen(_BACKLOG)
     except OSError as error:
         bound.close()
