@@ -42,7 +42,7 @@ def add_subparsers_on_demand(parser, cli_name, dest, group_name, hide_extensions
 class Command:
     def main(self, *, parser, args):
         command, *words = args.words
-        return {"node": self.node, "run": self.run, "launch": self.launch}[command](args, *words)
+        return getattr(self, command)(args, *words)
 
     def node(self, args, word):
         import rclpy
@@ -56,11 +56,17 @@ class Command:
         from ament_index_python.packages import get_package_prefix
         return subprocess.run([f"{get_package_prefix(package)}/lib/{package}/{name}", *words]).returncode
 
+    def pkg(self, args, verb, package):
+        from ament_index_python.packages import get_package_prefix
+        import os
+        print(*os.listdir(f"{get_package_prefix(package)}/lib/{package}"))
+
     def launch(self, args, *words):
         return subprocess.run(["ros2", "node", "list"]).returncode or 1
 """,
     "ros2launch/__init__.py": "",
     "ros2node/__init__.py": "",
+    "ros2pkg/__init__.py": "",
     "ros2run/__init__.py": "",
 }
 TALKER = """\
@@ -180,6 +186,11 @@ def test_the_examples_are_programs_and_those_of_the_suite_say_that_it_is_there(r
     done = ros2("run", "thymio_sim_ros", "line_follower", "--ros-args", "-p", "speed:=wrong")
     assert "speed" in done.stderr
     assert done.returncode == 1
+
+
+def test_packages_need_no_server(ros2) -> None:
+    done = ros2("--connect", f"ws://127.0.0.1:{free_port()}", "pkg", "executables", "lesson")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "talker\n", "a line of setup.py\n")
 
 
 def test_launched_processes_find_ros2_and_a_failed_launch_names_packages_that_need_a_build(ros2) -> None:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib.util
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from typing import Any
 
+from thymio_sim_ros import course_packages
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.ros import env, ros2_installation
-from thymio_sim_ros.cli.ros.membership import add_membership_options, interruptible, membership
+from thymio_sim_ros.cli.ros.graph_choice import choose_graph
+from thymio_sim_ros.cli.ros.membership import Membership, add_membership_options, interruptible, membership
 from thymio_sim_ros.cli.ros.overlay import Overlay
 
 __all__ = ["run"]
@@ -20,6 +23,8 @@ __all__ = ["run"]
 _FAILED = 1
 _OF_PACKAGES = {"launch", "pkg", "run"}
 """Commands that work with packages, and so with those of the workspace."""
+_OF_FILES = {"interface", "pkg"}
+"""Commands that need no graph, and so no server."""
 _OF_LAUNCH_ROS = "composition_interfaces"
 
 _EPILOG = """\
@@ -55,7 +60,7 @@ def run(argv: Sequence[str]) -> int:
                 f"ros2: found no {name}, expected it: `thymio-sim ros2 --install` installs it;"
                 f" {ros2_installation.INSTEAD}"
             )
-    with interruptible(), membership(options, "ros2") as member:
+    with interruptible(), _membership(options, command) as member:
         sys.argv = ["ros2", *options.words]
         main: Callable[..., Any] = import_module("ros2cli.cli").main
         if not member.is_remote:
@@ -74,6 +79,18 @@ def run(argv: Sequence[str]) -> int:
         print(code, file=sys.stderr)
         return _FAILED
     return int(code or 0)
+
+
+@contextlib.contextmanager
+def _membership(options: argparse.Namespace, command: str) -> Iterator[Membership]:
+    """The membership that a command needs; that of `_OF_FILES` is not connected. Raises UsageError."""
+    if command not in _OF_FILES:
+        with membership(options, "ros2") as member:
+            yield member
+        return
+    is_embedded = choose_graph(portable=bool(options.connect), ros=options.ros)
+    course_packages.add_to_path()
+    yield Membership("this computer", is_remote=is_embedded)
 
 
 def _run_with_packages(main: Callable[..., Any], options: argparse.Namespace) -> Any:
