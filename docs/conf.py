@@ -14,7 +14,7 @@ author = "Thymio Sim ROS maintainers"
 copyright = author  # noqa: A001  # the name that Sphinx reads
 version = release = re.search(r'"(.+)"', (ROOT / "thymio_sim_ros" / "__init__.py").read_text("utf-8"))[1]
 
-extensions = ["myst_parser", "autodoc2"]
+extensions = ["myst_parser", "autodoc2", "sphinx_design"]
 root_doc = "docs/index"
 include_patterns = [
     "docs/*.md",
