@@ -7,12 +7,17 @@ start choose for themselves.
 
 from __future__ import annotations
 
+import importlib
+import importlib.util
 import os
 from pathlib import Path
+from typing import Any
+
+import pytest
 
 from thymio_sim_ros.portable_ros import import_hook
 
-__all__ = ["IS_EMBEDDED", "ROS_WORKER", "needs_ros"]
+__all__ = ["IS_EMBEDDED", "ROS_WORKER", "module", "needs_package", "needs_ros"]
 
 ROS_WORKER = "gw0"
 """The worker of pytest-xdist with an installed ROS 2."""
@@ -53,6 +58,27 @@ def needs_ros(path: Path | str) -> bool:
     """Whether the tests of a file need an installed ROS 2; the path is absolute, or one from the project's folder."""
     path = _ROOT.parent / path
     return any(_ROOT / name in (path, *path.parents) for name in _REAL)
+
+
+def needs_package(name: str) -> pytest.MarkDecorator:
+    """The mark of tests with types of a package that the embedded graph has, and an installed ROS 2 may not have."""
+    return pytest.mark.skipif(importlib.util.find_spec(name) is None, reason=f"{name} is not in this ROS 2")
+
+
+def module(name: str) -> Any:
+    """A module that needs such a package. Where it cannot be imported, its names are empty classes.
+
+    So each worker collects the same tests, as pytest-xdist demands; `needs_package` skips them.
+    """
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        return _Missing()
+
+
+class _Missing:
+    def __getattr__(self, name: str) -> type:
+        return type(name, (), {})
 
 
 def _choose() -> bool:

@@ -7,9 +7,11 @@ import math
 
 import pytest
 
-pytest.importorskip("turtlesim.msg", reason="turtlesim is not installed in this ROS 2")
+from tests import ros_graph
 
-from thymio_sim_ros.turtlesim.turtle_teleop_key import Teleop, keys_of, main
+pytestmark = ros_graph.needs_package("turtlesim")
+
+turtle_teleop_key = ros_graph.module("thymio_sim_ros.turtlesim.turtle_teleop_key")
 
 UNIT_M = 0.04
 
@@ -21,7 +23,7 @@ def sim(simulation):
 
 @pytest.fixture
 def teleop(ros, sim):
-    node = ros.add(Teleop(ros.context))
+    node = ros.add(turtle_teleop_key.Teleop(ros.context))
     ros.until(lambda: node.count_subscribers("/turtle1/cmd_vel") and node._turn.server_is_ready())
     return node
 
@@ -37,7 +39,7 @@ def teleop(ros, sim):
 )
 def test_keys_are_read_whole_however_they_arrive(sent, keys):
     texts = iter(sent)
-    read = keys_of(lambda: next(texts, ""))
+    read = turtle_teleop_key.keys_of(lambda: next(texts, ""))
     found = list(itertools.islice((key for key in read), 12))
     assert [key for key in found if key] == [key for key in keys if key]
 
@@ -77,5 +79,5 @@ def test_f_ends_the_turn_and_q_the_program(sim, teleop):
 
 def test_without_a_terminal_it_says_so(capsys, monkeypatch):
     monkeypatch.setattr("sys.stdin.isatty", lambda: False)
-    assert main() == 2
+    assert turtle_teleop_key.main() == 2
     assert capsys.readouterr().err == "turtle_teleop_key: found no terminal, expected one with a keyboard\n"

@@ -11,12 +11,15 @@ from geometry_msgs.msg import PoseStamped, Twist, Vector3
 from rcl_interfaces.msg import Log
 from rclpy.action import ActionClient
 
+from tests import ros_graph
 from thymio_sim_ros.engine.replay import last_run
 from thymio_sim_ros.ros.interface.convert_readings import quaternion, yaw_of
 from thymio_sim_ros.sim.commands import Lift, MotorTargets
 from thymio_sim_ros.sim.model.geometry import Pose, wrap_angle
 
-actions = pytest.importorskip("irobot_create_msgs.action", reason="irobot_create_msgs is not in this ROS 2")
+pytestmark = ros_graph.needs_package("irobot_create_msgs")
+
+actions = ros_graph.module("irobot_create_msgs.action")
 DriveDistance, NavigateToPosition, RotateAngle = (
     actions.DriveDistance,
     actions.NavigateToPosition,

@@ -12,27 +12,16 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 from rclpy.action import ActionClient
 
+from tests import ros_graph
 from tests.ros.profiles.test_actions import WALL_AHEAD, pose
 from thymio_sim_ros.ros.interface.convert_readings import yaw_of
 from thymio_sim_ros.sim.actuators.loudspeaker import LoudspeakerState
 from thymio_sim_ros.sim.commands import BodyTwist, Lift, MoveRobot, PressButton
 from thymio_sim_ros.sim.model.geometry import wrap_angle
 
-pytest.importorskip("irobot_create_msgs.msg", reason="irobot_create_msgs is not in this ROS 2")
-from irobot_create_msgs import action
-from irobot_create_msgs.msg import (
-    AudioNote,
-    AudioNoteVector,
-    HazardDetectionVector,
-    InterfaceButtons,
-    IrIntensityVector,
-    KidnapStatus,
-    LedColor,
-    LightringLeds,
-    StopStatus,
-    WheelVels,
-)
-from irobot_create_msgs.srv import EStop, ResetPose
+pytestmark = ros_graph.needs_package("irobot_create_msgs")
+
+action, msg, srv = (ros_graph.module(f"irobot_create_msgs.{kind}") for kind in ("action", "msg", "srv"))
 
 BUMP, CLIFF, WHEEL_DROP = 1, 2, 4
 
@@ -90,7 +79,7 @@ def detections(message):
 
 
 def test_a_bump_is_detected_where_the_robot_touches(ros, sim):
-    hazards = ros.collect(HazardDetectionVector, "/hazard_detection")
+    hazards = ros.collect(msg.HazardDetectionVector, "/hazard_detection")
     sim.step(0.5)
     assert len(hazards) == pytest.approx(25, abs=2)
     assert detections(hazards[-1]) == set()
@@ -103,8 +92,8 @@ def test_a_bump_is_detected_where_the_robot_touches(ros, sim):
 
 def test_a_robot_in_a_hand_has_dropped_wheels_and_is_kidnapped(ros, sim):
     hazards, kidnapped = (
-        ros.collect(HazardDetectionVector, "/hazard_detection"),
-        ros.collect(KidnapStatus, "/kidnap_status"),
+        ros.collect(msg.HazardDetectionVector, "/hazard_detection"),
+        ros.collect(msg.KidnapStatus, "/kidnap_status"),
     )
     sim.engine.post("thymio", Lift(is_lifted=True))
     sim.step(0.2)
@@ -114,7 +103,7 @@ def test_a_robot_in_a_hand_has_dropped_wheels_and_is_kidnapped(ros, sim):
 
 def test_an_edge_is_a_cliff(ros, simulation):
     sim = simulation(like="create3", playground=EDGE_AHEAD)
-    hazards = ros.collect(HazardDetectionVector, "/hazard_detection")
+    hazards = ros.collect(msg.HazardDetectionVector, "/hazard_detection")
     sim.step(0.3)
     assert detections(hazards[-1]) == set()
     sim.engine.post("thymio", BodyTwist(0.05, 0.0))
@@ -122,7 +111,7 @@ def test_an_edge_is_a_cliff(ros, simulation):
 
 
 def test_intensities_grow_towards_a_wall(ros, sim):
-    found = ros.collect(IrIntensityVector, "/ir_intensity")
+    found = ros.collect(msg.IrIntensityVector, "/ir_intensity")
     sim.step(0.3)
     places = [one.header.frame_id for one in found[-1].readings]
     assert places[0] == "ir_intensity_side_left"
@@ -135,7 +124,7 @@ def test_intensities_grow_towards_a_wall(ros, sim):
 
 
 def test_buttons_are_pressed_for_a_time(ros, sim):
-    found = ros.collect(InterfaceButtons, "/interface_buttons")
+    found = ros.collect(msg.InterfaceButtons, "/interface_buttons")
     sim.step(0.1)
     sim.engine.post("thymio", PressButton("left", True))
     sim.step(0.5)
@@ -148,7 +137,7 @@ def test_buttons_are_pressed_for_a_time(ros, sim):
 
 
 def test_wheels_say_how_they_turn(ros, sim):
-    speeds, stopped = ros.collect(WheelVels, "/wheel_vels"), ros.collect(StopStatus, "/stop_status")
+    speeds, stopped = ros.collect(msg.WheelVels, "/wheel_vels"), ros.collect(msg.StopStatus, "/stop_status")
     sim.step(0.1)
     assert stopped[-1].is_stopped
     sim.engine.post("thymio", BodyTwist(0.066, 0.0))
@@ -158,20 +147,20 @@ def test_wheels_say_how_they_turn(ros, sim):
 
 
 def test_the_ring_of_lights_is_the_body_of_a_thymio(ros, sim):
-    red, blue, black = LedColor(red=255), LedColor(blue=255), LedColor()
-    publisher = ros.publisher(LightringLeds, "/cmd_lightring")
-    publisher.publish(LightringLeds(override_system=True, leds=[blue, blue, black, red, red, black]))
+    red, blue, black = msg.LedColor(red=255), msg.LedColor(blue=255), msg.LedColor()
+    publisher = ros.publisher(msg.LightringLeds, "/cmd_lightring")
+    publisher.publish(msg.LightringLeds(override_system=True, leds=[blue, blue, black, red, red, black]))
     sim.step(0.1)
     lights = dict(sim.world.robots["thymio"].snapshot().leds)
     assert (lights["bottom_left"], lights["bottom_right"], lights["top"]) == ((32, 0, 0), (0, 0, 32), (0, 0, 0))
-    publisher.publish(LightringLeds(override_system=False))
+    publisher.publish(msg.LightringLeds(override_system=False))
     sim.step(0.1)
     lights = dict(sim.world.robots["thymio"].snapshot().leds)
     assert lights["bottom_left"] == (0, 0, 0)
 
 
 def note(frequency, seconds):
-    return AudioNote(frequency=frequency, max_runtime=Duration(nanosec=round(seconds * 1e9)))
+    return msg.AudioNote(frequency=frequency, max_runtime=Duration(nanosec=round(seconds * 1e9)))
 
 
 def test_notes_are_played_one_after_the_other_and_can_be_appended(ros, sim):
@@ -185,15 +174,15 @@ def test_notes_are_played_one_after_the_other_and_can_be_appended(ros, sim):
             if not heard or heard[-1] != frequency:
                 heard.append(frequency)
 
-    publisher = ros.publisher(AudioNoteVector, "/cmd_audio")
-    publisher.publish(AudioNoteVector(notes=[note(440, 0.1), note(0, 0.1), note(880, 0.1)]))
+    publisher = ros.publisher(msg.AudioNoteVector, "/cmd_audio")
+    publisher.publish(msg.AudioNoteVector(notes=[note(440, 0.1), note(0, 0.1), note(880, 0.1)]))
     listen(0.15)
-    publisher.publish(AudioNoteVector(notes=[note(660, 0.1)], append=True))
+    publisher.publish(msg.AudioNoteVector(notes=[note(660, 0.1)], append=True))
     listen(0.5)
     assert [frequency for frequency in heard if frequency] == [440, 880, 660]
-    publisher.publish(AudioNoteVector(notes=[note(440, 0.9)]))
+    publisher.publish(msg.AudioNoteVector(notes=[note(440, 0.9)]))
     listen(0.1)
-    publisher.publish(AudioNoteVector())
+    publisher.publish(msg.AudioNoteVector())
     listen(0.1)
     assert heard[-1] == 0
 
@@ -202,12 +191,12 @@ def test_the_odometry_is_set_and_an_emergency_stop_stops(ros, sim, call):
     odometry = ros.collect(Odometry, "/odom")
     goal = PoseStamped().pose
     goal.position.x, goal.position.y = 1.0, -2.0
-    call(ResetPose, "/reset_pose", pose=goal)
+    call(srv.ResetPose, "/reset_pose", pose=goal)
     sim.step(0.2)
     assert (odometry[-1].pose.pose.position.x, odometry[-1].pose.pose.position.y) == (1.0, -2.0)
     sim.engine.post("thymio", BodyTwist(0.1, 0.0))
     sim.step(0.1)
-    assert call(EStop, "/e_stop", e_stop_on=True).success
+    assert call(srv.EStop, "/e_stop", e_stop_on=True).success
     sim.step(0.1)
     assert sim.world.robots["thymio"].twist.linear_m_s == 0.0
 
@@ -265,7 +254,7 @@ def test_a_wall_is_followed_on_either_side(sim, act, side):
 
 
 def test_a_melody_is_played_some_times(sim, act):
-    sequence = AudioNoteVector(notes=[note(440, 0.2), note(660, 0.3)])
+    sequence = msg.AudioNoteVector(notes=[note(440, 0.2), note(660, 0.3)])
     accepted, status, result, _ = act(
         action.AudioNoteSequence, "/audio_note_sequence", note_sequence=sequence, iterations=3
     )
@@ -276,7 +265,7 @@ def test_a_melody_is_played_some_times(sim, act):
 
 @pytest.mark.parametrize("kind", [1, 2])
 def test_lights_are_animated_for_a_time(sim, act, kind):
-    ring = LightringLeds(leds=[LedColor(red=255)] + [LedColor()] * 5)
+    ring = msg.LightringLeds(leds=[msg.LedColor(red=255)] + [msg.LedColor()] * 5)
     accepted, status, result, feedback = act(
         action.LedAnimation, "/led_animation", animation_type=kind, lightring=ring, max_runtime=Duration(sec=2)
     )

@@ -14,14 +14,14 @@ from rclpy.parameter_client import AsyncParameterClient
 from std_srvs.srv import Empty
 from visualization_msgs.msg import MarkerArray
 
-turtlesim = pytest.importorskip("turtlesim.msg", reason="turtlesim is not installed in this ROS 2")
-from turtlesim.action import RotateAbsolute
-from turtlesim.msg import Color, Pose
-from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+from tests import ros_graph
+
+pytestmark = ros_graph.needs_package("turtlesim")
+
+action, msg, srv = (ros_graph.module(f"turtlesim.{kind}") for kind in ("action", "msg", "srv"))
 
 MIDDLE = 499 / 90
 UNIT_M = 0.04
-TURN = RotateAbsolute.Goal
 
 
 @pytest.fixture
@@ -45,12 +45,14 @@ def call(ros, sim):
 @pytest.fixture
 def goals(ros, sim):
     """Send a goal to turn; returns the client's handle once it is answered, and the feedback."""
-    client = ActionClient(ros.node, RotateAbsolute, "/turtle1/rotate_absolute")
+    client = ActionClient(ros.node, action.RotateAbsolute, "/turtle1/rotate_absolute")
     feedback = []
 
     def send(theta):
         ros.until(client.server_is_ready)
-        answered = client.send_goal_async(TURN(theta=theta), lambda message: feedback.append(message.feedback))
+        answered = client.send_goal_async(
+            action.RotateAbsolute.Goal(theta=theta), lambda message: feedback.append(message.feedback)
+        )
         return sim.until(lambda: answered.done() and answered).result()
 
     yield send, feedback
@@ -81,7 +83,7 @@ def test_names_are_those_of_turtlesim(ros, sim):
 
 
 def test_a_velocity_is_in_units_and_ends_after_a_second(ros, sim):
-    poses = ros.collect(Pose, "/turtle1/pose")
+    poses = ros.collect(msg.Pose, "/turtle1/pose")
     ros.publisher(Twist, "/turtle1/cmd_vel").publish(drive(2.0))
     sim.step(2.0)
     assert (poses[0].x, poses[0].y, poses[0].theta) == pytest.approx((MIDDLE, MIDDLE, 0.0), abs=0.1)
@@ -92,7 +94,7 @@ def test_a_velocity_is_in_units_and_ends_after_a_second(ros, sim):
 
 def test_the_curve_of_the_tutorial_is_not_clamped_and_a_faster_one_keeps_its_radius(ros, sim):
     logged = ros.collect(Log, "/rosout")
-    poses = ros.collect(Pose, "/turtle1/pose")
+    poses = ros.collect(msg.Pose, "/turtle1/pose")
     publisher = ros.publisher(Twist, "/turtle1/cmd_vel")
     publisher.publish(drive(2.0, 1.8))
     sim.step(0.9)
@@ -107,7 +109,7 @@ def test_the_curve_of_the_tutorial_is_not_clamped_and_a_faster_one_keeps_its_rad
 
 
 def test_the_color_sensor_sees_the_background_and_its_own_line(ros, sim):
-    colors = ros.collect(Color, "/turtle1/color_sensor")
+    colors = ros.collect(msg.Color, "/turtle1/color_sensor")
     sim.until(lambda: colors)
     assert (colors[0].r, colors[0].g, colors[0].b) in {(69, 86, 255), (179, 184, 255)}
     ros.publisher(Twist, "/turtle1/cmd_vel").publish(drive(1.0))
@@ -116,7 +118,7 @@ def test_the_color_sensor_sees_the_background_and_its_own_line(ros, sim):
 
 
 def test_spawn_chooses_a_name_and_a_turtle_has_its_own_topics(ros, sim, call):
-    assert call(Spawn, "/spawn", x=2.0, y=2.0, theta=0.2, name="").name == "turtle2"
+    assert call(srv.Spawn, "/spawn", x=2.0, y=2.0, theta=0.2, name="").name == "turtle2"
     assert pose_of(sim, "turtle2") == pytest.approx((2.0, 2.0, 0.2), abs=1e-6)
     ros.publisher(Twist, "/turtle2/cmd_vel").publish(drive(1.0))
     sim.step(0.5)
@@ -135,23 +137,23 @@ def test_spawn_chooses_a_name_and_a_turtle_has_its_own_topics(ros, sim, call):
 )
 def test_a_turtle_that_cannot_be_is_refused_with_the_reason(ros, sim, call, fields, reason):
     logged = ros.collect(Log, "/rosout")
-    assert call(Spawn, "/spawn", **fields).name == ""
+    assert call(srv.Spawn, "/spawn", **fields).name == ""
     sim.until(lambda: any(reason in line.msg for line in logged))
     assert list(sim.world.robots) == ["turtle1"]
 
 
 def test_kill_and_reset(ros, sim, call, runtime):
     runtime()
-    call(Spawn, "/spawn", x=2.0, y=2.0, theta=0.0, name="a")
-    call(Spawn, "/spawn", x=9.0, y=2.0, theta=0.0, name="b")
+    call(srv.Spawn, "/spawn", x=2.0, y=2.0, theta=0.0, name="a")
+    call(srv.Spawn, "/spawn", x=9.0, y=2.0, theta=0.0, name="b")
     sim.step(0.2)
-    call(Kill, "/kill", name="a")
+    call(srv.Kill, "/kill", name="a")
     sim.step(0.2)
     assert list(sim.world.robots) == ["turtle1", "b"]
     logged = ros.collect(Log, "/rosout")
-    call(Kill, "/kill", name="a")
+    call(srv.Kill, "/kill", name="a")
     sim.until(lambda: any("found no turtle 'a', expected one of turtle1, b" in line.msg for line in logged))
-    call(Kill, "/kill", name="turtle1")
+    call(srv.Kill, "/kill", name="turtle1")
     call(Empty, "/reset")
     sim.step(0.2)
     assert list(sim.world.robots) == ["turtle1"]
@@ -161,12 +163,12 @@ def test_kill_and_reset(ros, sim, call, runtime):
 
 def test_teleports_draw_a_line_and_clear_erases_it(ros, sim, call):
     trails = ros.collect(MarkerArray, "/turtle1/_pen/trail", transient_local=True)
-    call(TeleportAbsolute, "/turtle1/teleport_absolute", x=2.0, y=MIDDLE, theta=0.0)
+    call(srv.TeleportAbsolute, "/turtle1/teleport_absolute", x=2.0, y=MIDDLE, theta=0.0)
     sim.step(0.3)
     assert pose_of(sim) == pytest.approx((2.0, MIDDLE, 0.0), abs=1e-6)
     assert sim.world.color_at(4.0 * UNIT_M, MIDDLE * UNIT_M) == pytest.approx((179 / 255, 184 / 255, 1.0))
     sim.until(lambda: any(marker.points for marker in trails[-1].markers))
-    call(TeleportRelative, "/turtle1/teleport_relative", linear=3.0, angular=math.pi / 2)
+    call(srv.TeleportRelative, "/turtle1/teleport_relative", linear=3.0, angular=math.pi / 2)
     sim.step(0.1)
     assert pose_of(sim) == pytest.approx((2.0, MIDDLE + 3.0, math.pi / 2), abs=1e-5)
     call(Empty, "/clear")
@@ -176,27 +178,27 @@ def test_teleports_draw_a_line_and_clear_erases_it(ros, sim, call):
 
 
 def test_the_pen_has_color_and_width_and_can_be_off(sim, call):
-    call(SetPen, "/turtle1/set_pen", r=255, g=0, b=0, width=10, off=0)
-    call(TeleportAbsolute, "/turtle1/teleport_absolute", x=8.0, y=MIDDLE, theta=0.0)
+    call(srv.SetPen, "/turtle1/set_pen", r=255, g=0, b=0, width=10, off=0)
+    call(srv.TeleportAbsolute, "/turtle1/teleport_absolute", x=8.0, y=MIDDLE, theta=0.0)
     sim.step(0.05)
     assert sim.world.color_at(7.0 * UNIT_M, MIDDLE * UNIT_M) == (1.0, 0.0, 0.0)
     assert sim.world.color_at(7.0 * UNIT_M, (MIDDLE + 0.1) * UNIT_M) == (1.0, 0.0, 0.0)
-    call(SetPen, "/turtle1/set_pen", r=0, g=255, b=0, width=10, off=1)
-    call(TeleportAbsolute, "/turtle1/teleport_absolute", x=8.0, y=9.0, theta=0.0)
+    call(srv.SetPen, "/turtle1/set_pen", r=0, g=255, b=0, width=10, off=1)
+    call(srv.TeleportAbsolute, "/turtle1/teleport_absolute", x=8.0, y=9.0, theta=0.0)
     sim.step(0.05)
     assert sim.world.color_at(8.0 * UNIT_M, 8.0 * UNIT_M) == pytest.approx((69 / 255, 86 / 255, 1.0))
 
 
 def test_a_teleport_with_nan_changes_nothing(ros, sim, call):
     logged = ros.collect(Log, "/rosout")
-    call(TeleportAbsolute, "/turtle1/teleport_absolute", x=math.nan, y=1.0, theta=0.0)
+    call(srv.TeleportAbsolute, "/turtle1/teleport_absolute", x=math.nan, y=1.0, theta=0.0)
     sim.until(lambda: any("x is nan, expected a finite number" in line.msg for line in logged))
     assert pose_of(sim) == pytest.approx((MIDDLE, MIDDLE, 0.0), abs=0.01)
 
 
 def test_a_turtle_that_meets_a_wall_is_reported(ros, sim, call):
     logged = ros.collect(Log, "/rosout")
-    call(TeleportAbsolute, "/turtle1/teleport_absolute", x=10.5, y=5.0, theta=0.0)
+    call(srv.TeleportAbsolute, "/turtle1/teleport_absolute", x=10.5, y=5.0, theta=0.0)
     ros.publisher(Twist, "/turtle1/cmd_vel").publish(drive(2.0))
     sim.until(lambda: any("turtle1 hit something at x=11" in line.msg for line in logged), 2.0)
     assert [line.name for line in logged if "hit something" in line.msg] == ["turtlesim"]
@@ -261,11 +263,11 @@ def test_a_turn_that_a_reset_ends_is_aborted(sim, call, goals):
 
 
 def test_the_background_is_a_parameter_and_a_reset_keeps_it(ros, sim, call):
-    colors = ros.collect(Color, "/turtle1/color_sensor")
+    colors = ros.collect(msg.Color, "/turtle1/color_sensor")
     scenes = ros.collect(MarkerArray, "/_markers", transient_local=True)
     client = AsyncParameterClient(ros.node, "turtlesim")
     ros.until(client.services_are_ready)
-    call(SetPen, "/turtle1/set_pen", r=0, g=0, b=0, width=3, off=1)
+    call(srv.SetPen, "/turtle1/set_pen", r=0, g=0, b=0, width=3, off=1)
     call(Empty, "/clear")
     done = client.set_parameters([Parameter("background_r", value=150)])
     sim.until(done.done)
@@ -281,11 +283,11 @@ def test_the_background_is_a_parameter_and_a_reset_keeps_it(ros, sim, call):
 
 
 def test_the_drawing_is_the_same_in_a_replay(sim, call, tmp_path):
-    call(Spawn, "/spawn", x=2.0, y=2.0, theta=0.2, name="")
-    call(TeleportAbsolute, "/turtle2/teleport_absolute", x=2.0, y=9.0, theta=0.0)
+    call(srv.Spawn, "/spawn", x=2.0, y=2.0, theta=0.2, name="")
+    call(srv.TeleportAbsolute, "/turtle2/teleport_absolute", x=2.0, y=9.0, theta=0.0)
     call(Empty, "/clear")
     sim.step(0.2)
-    call(TeleportAbsolute, "/turtle2/teleport_absolute", x=3.0, y=9.0, theta=0.0)
+    call(srv.TeleportAbsolute, "/turtle2/teleport_absolute", x=3.0, y=9.0, theta=0.0)
     sim.step(0.2)
     file = tmp_path / "run.jsonl.gz"
     file.write_bytes(sim.simulator.runner.run_log())
