@@ -41,6 +41,24 @@ const blocklyMedia = {
   },
 };
 
+/**
+ * Parts that all pages share: `<!-- part: NAME key="value" -->` stands for `parts/NAME.html` with `{key}` replaced.
+ *
+ * @type {import("vite").Plugin}
+ */
+const sharedParts = {
+  name: "shared-parts",
+  transformIndexHtml: {
+    order: "pre",
+    handler: (html) =>
+      html.replace(/^( *)<!-- part: (\w+)((?: \w+="[^"]*")*) -->\n/gm, (_, indent, name, given) => {
+        const values = Object.fromEntries([...given.matchAll(/(\w+)="([^"]*)"/g)].map(([, key, value]) => [key, value]));
+        const part = readFileSync(here(`parts/${name}.html`), "utf8").replace(/\{(\w+)\}/g, (_, key) => values[key]);
+        return part.replace(/^(?=.)/gm, indent);
+      }),
+  },
+};
+
 /** @param {string} file */
 function here(file) {
   return fileURLToPath(new URL(file, import.meta.url));
@@ -61,7 +79,7 @@ const command = {
 /** @type {import("vite").UserConfig} */
 const page = {
   base: "./",
-  plugins: [evaluatedTexts, shippedDocumentation, blocklyMedia],
+  plugins: [evaluatedTexts, sharedParts, shippedDocumentation, blocklyMedia],
   build: {
     outDir: "dist",
     emptyOutDir: true,

@@ -140,12 +140,18 @@ class BridgeServer:
 
     def _wait_for_room(self) -> None:
         """Slow down a thread that publishes faster than clients can be served."""
-        if asyncio._get_running_loop() is self._loop:
+        if self._is_in_loop():
             self._process()
             return
         self._has_room.clear()
         if len(self._pending) > _MAX_PENDING:
             self._has_room.wait(_MAX_WAIT_S)
+
+    def _is_in_loop(self) -> bool:
+        try:
+            return asyncio.get_running_loop() is self._loop
+        except RuntimeError:  # there is none in this thread
+            return False
 
     # --- the thread of the loop ---
 
