@@ -24,7 +24,7 @@ def test_the_index_for_pages_has_titles_stars_and_paths() -> None:
     first = index()["steps"][0]
     assert first["titles"]["de"] == "Losfahren"
     mission = first["missions"][0]
-    assert (mission["name"], mission["titles"]["en"], mission["stars"]) == ("forward", "Off you go", 2)
+    assert (mission["name"], mission["titles"]["en"], mission["stars"]) == ("forward", "Off you go", 3)
     assert Path(mission["path"]).is_file()
 
 

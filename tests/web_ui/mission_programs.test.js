@@ -7,10 +7,13 @@ import { test } from "node:test";
 import { difference } from "../../web_ui/blockly/compare.js";
 import { readFile } from "../../web_ui/blockly/file.js";
 import { BLOCKS } from "../../web_ui/blockly/language.js";
-import { lookOf } from "../../web_ui/blockly/looks.js";
+import { NAMES as BLOCK_NAMES, lookOf } from "../../web_ui/blockly/looks.js";
+import { allBlocks } from "../../web_ui/blockly/state.js";
+import { CATEGORIES } from "../../web_ui/blockly/toolbox.js";
 import { compareText } from "../../web_ui/vpl/compare.js";
 import { readVpl } from "../../web_ui/vpl/file.js";
 import { holdsVpl } from "../../web_ui/vpl/holds.js";
+import { NAMES as VPL_NAMES } from "../../web_ui/vpl/toolbox.js";
 
 const MISSIONS = new URL("../../playgrounds/missions/", import.meta.url);
 const NAMES = readdirSync(MISSIONS, { recursive: true }).map(String);
@@ -51,5 +54,38 @@ for (const { name, text } of programsIn("text")) {
   test(`${name} opens as text`, () => {
     assert.ok(!holdsVpl(text));
     assert.ok(!BLOCKS.holds(text));
+  });
+}
+
+/** Types of blocks of a program. @param {string} text @returns {string[]} */
+function typesIn(text) {
+  if (!holdsVpl(text)) return [...allBlocks(readFile(text).state)].map(({ type }) => type);
+  const blocks = readVpl(text).program.rows.flatMap(({ event, actions }) => [event, ...actions]);
+  return blocks.flatMap((block) => (block === null ? [] : [block.name]));
+}
+
+for (const name of NAMES.filter((each) => /^\d-\w+.\w+\.json$/.test(each))) {
+  const mission = JSON.parse(readFileSync(new URL(name, MISSIONS), "utf8"));
+  if (mission.toolbox === undefined) continue;
+  test(`${name} hides blocks that there are, and none that its solutions need`, () => {
+    const { hide, modes = [] } = mission.toolbox;
+    const known = [...VPL_NAMES, ...BLOCK_NAMES];
+    assert.deepEqual(
+      [...hide, ...modes].filter((each) => !known.includes(each)),
+      [],
+    );
+    for (const [language, file] of Object.entries(mission.solutions)) {
+      const look = language === "scratch" ? "scratch" : "blockly";
+      const categories = CATEGORIES[look].filter((each) => hide.includes(`category:${each.name}`));
+      const hidden = [...hide, ...(language === "vpl" ? [] : categories.flatMap(({ types }) => types))];
+      const text = readFileSync(new URL(file, new URL(name, MISSIONS)), "utf8");
+      const shadows = ["math_number"]; // a number stands in its block
+      const needed = language === "text" ? [] : typesIn(text).filter((type) => !shadows.includes(type));
+      assert.deepEqual(
+        needed.filter((type) => hidden.includes(type)),
+        [],
+        language,
+      );
+    }
   });
 }
