@@ -12,6 +12,7 @@ from rcl_interfaces.msg import Log
 from rclpy.action import ActionClient
 
 from tests import ros_graph
+from tests.ros.rclpy_ext.test_connections import beaten
 from thymio_sim_ros.engine.replay import last_run
 from thymio_sim_ros.ros.interface.convert_readings import quaternion, yaw_of
 from thymio_sim_ros.sim.commands import Lift, MotorTargets
@@ -270,3 +271,19 @@ def test_a_run_with_goals_is_repeated_from_its_log(simulation, goals, tmp_path):
         repeated.repeat_inputs(engine)
         engine.step(())
     assert engine.digest() == digest
+
+
+def test_an_action_client_with_another_name_is_reported(ros, simulation, goals):
+    sim = simulation()
+    client = ActionClient(ros.node, DriveDistance, "/bot/drive_distance")
+    ros.until(lambda: beaten(sim.simulator))
+    (one,) = beaten(sim.simulator)
+    assert str(one).startswith(
+        "/bot/drive_distance has an action client of irobot_create_msgs/action/DriveDistance by node"
+    )
+    assert "Send goals to /drive_distance, or start the simulator with" in str(one)
+    assert "'robot_names:=[bot]'" in str(one)
+    client.destroy()
+    client = ActionClient(ros.node, DriveDistance, "/drive_distance")
+    ros.until(lambda: not beaten(sim.simulator))
+    client.destroy()

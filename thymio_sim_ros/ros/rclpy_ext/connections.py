@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import difflib
 import time
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -30,6 +30,7 @@ from thymio_sim_ros.names.type_names import type_name
 from thymio_sim_ros.ros.rclpy_ext.peers import SUBSCRIBING_PEER
 
 __all__ = [
+    "ACTION_CLIENT",
     "CLIENT",
     "PUBLISHER",
     "SERVER",
@@ -55,8 +56,8 @@ MAX_NAMES = 3
 _OURS = ("simulator", "aseba_runtime", "foxglove_bridge", SUBSCRIBING_PEER)
 """Nodes of this package with many endpoints, whose names come from the graph or fit: they are skipped, since queries
 cost time."""
-_GOAL_SERVICE = "/_action/send_goal"
-"""End of the name of the service that gets the goals of an action."""
+_OF_ACTION, _GOAL_SERVICE, _GOAL_TYPE = "/_action/", "/_action/send_goal", "_SendGoal"
+"""In the names of all topics and services of an action; ends of name and type of the service that gets its goals."""
 _OF_EVERY_NODE = frozenset({
     "rosout", "parameter_events", "describe_parameters", "get_parameter_types", "get_parameters", "list_parameters",
     "set_parameters", "set_parameters_atomically", "get_type_description",
@@ -77,6 +78,7 @@ class Side:
 PUBLISHER = Side("publisher", "subscriber", "its messages never arrive", "Publish on")
 SUBSCRIBER = Side("subscriber", "publisher", "it gets no message", "Subscribe to")
 CLIENT = Side("client", "server", "its calls are never answered", "Call")
+ACTION_CLIENT = Side("action client", "action server", "its goals are never answered", "Send goals to")
 SERVER = Side("server", "client", "it gets no call", "Serve")
 
 
@@ -95,6 +97,8 @@ _QUERIES = (
     _Query(SUBSCRIBER, "get_subscriber_names_and_types_by_node", "publishers", "count_publishers"),
     _Query(CLIENT, "get_client_names_and_types_by_node", "services", "count_services"),
 )
+_GOALS = _Query(ACTION_CLIENT, "get_client_names_and_types_by_node", "", "count_services")
+"""Clients of actions are known by one of their services."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,9 +113,10 @@ class Unconnected:
     cure: str
 
     def __str__(self) -> str:
+        article = "an" if self.side.name.startswith("a") else "a"
         return (
-            f"{self.topic} has a {self.side.name} of {self.found} by node {self.node}; expected {self.expected}:"
-            f" {self.side.effect}. {self.cure}"
+            f"{self.topic} has {article} {self.side.name} of {self.found} by node {self.node};"
+            f" expected {self.expected}: {self.side.effect}. {self.cure}"
         )
 
 
@@ -131,7 +136,8 @@ class _Endpoint:
         return _full(self.namespace, self.node)
 
 
-_OwnEndpoint: TypeAlias = "Publisher[Any] | Subscription | Client[Any, Any] | Service"
+_OwnEndpoint: TypeAlias = "Publisher[Any] | Subscription | Client[Any, Any] | Service | tuple[str, str]"
+"""An endpoint, or name and type of an action."""
 
 
 class _OwnNames:
@@ -141,8 +147,10 @@ class _OwnNames:
         self.endpoints = endpoints
         self.pairs = frozenset(map(_name_and_type, endpoints))
         """Names with types: a profile may have a topic with two."""
-        self.types = dict(map(_name_and_type, reversed(endpoints)))
+        self.types: dict[str, str] = {}
         """The first type by name."""
+        for name, kind in map(_name_and_type, endpoints):
+            self.types.setdefault(name, kind)
         self._by_word: dict[str, list[str]] = {}
         for name in self.types:
             if (word := _last(name)) not in _OF_EVERY_NODE:
@@ -183,6 +191,7 @@ class Connections:
         *,
         beside: Sequence[Node] = (),
         missing: Mapping[str, str] | None = None,
+        actions: Callable[[], Mapping[str, str]] = dict,
     ) -> None:
         """Watch the endpoints of a node.
 
@@ -192,9 +201,10 @@ class Connections:
             beside: Other nodes whose endpoints count as those of the node.
             missing: Sentences by names of topics, services and actions that do not exist on purpose: relative to a
                 robot, or full with a slash at the start.
+            actions: Returns the types of the actions that the nodes serve, by their full names.
         """
         self._node, self._own_nodes = node, (node, *beside)
-        self._switched_off, self._missing = switched_off or {}, missing or {}
+        self._switched_off, self._missing, self._actions = switched_off or {}, missing or {}, actions
         self._own: dict[Side, _OwnNames] = {}
         self._misfits: dict[_Endpoint, Unconnected | None] = {}
         """Endpoints with name and type of ours, with the fault of their QoS."""
@@ -248,7 +258,7 @@ class Connections:
             names = self._own_names(endpoint.query)
             types = names.types
             if endpoint.topic not in types:
-                if not self._may_be_wrong(endpoint) or getattr(self._node, endpoint.query.count_peers)(endpoint.topic):
+                if not self._may_be_wrong(endpoint) or self._count_peers(endpoint):
                     continue
                 suspects.add(endpoint)
                 if is_settled or endpoint in self._suspects:
@@ -271,11 +281,25 @@ class Connections:
                     listed = getattr(self._node, query.by_node)(name, namespace)
                 except NodeNameNonExistentError:  # the node has just ended
                     break
-                yield from (_Endpoint(query, topic, kind, name, namespace) for topic, types in listed for kind in types)
+                for topic, kind in ((topic, kind) for topic, types in listed for kind in types):
+                    if _OF_ACTION not in topic:
+                        yield _Endpoint(query, topic, kind, name, namespace)
+                    elif query.side is CLIENT and topic.endswith(_GOAL_SERVICE):
+                        action = topic.removesuffix(_GOAL_SERVICE)
+                        yield _Endpoint(_GOALS, action, kind.removesuffix(_GOAL_TYPE), name, namespace)
+
+    def _count_peers(self, endpoint: _Endpoint) -> int:
+        name = endpoint.topic + (_GOAL_SERVICE if endpoint.query is _GOALS else "")
+        count: int = getattr(self._node, endpoint.query.count_peers)(name)
+        return count
 
     def _own_names(self, query: _Query) -> _OwnNames:
         """Return the names of our node that connect to a side."""
-        endpoints = [endpoint for node in self._own_nodes for endpoint in getattr(node, query.own_peers)]
+        endpoints: list[_OwnEndpoint]
+        if query is _GOALS:
+            endpoints = list(self._actions().items())
+        else:
+            endpoints = [endpoint for node in self._own_nodes for endpoint in getattr(node, query.own_peers)]
         known = self._own.get(query.side)
         if known is None or known.endpoints != endpoints:
             self._own[query.side] = known = _OwnNames(endpoints)
@@ -291,7 +315,7 @@ class Connections:
 
     def _reason_of(self, endpoint: _Endpoint) -> str:
         """Return why there is no peer for a name on purpose; empty if that is not the reason."""
-        name = endpoint.topic.removesuffix(_GOAL_SERVICE)
+        name = endpoint.topic
         return next(
             (why for of, why in self._missing.items() if name == of or (of[0] != "/" and name.endswith(f"/{of}"))), ""
         )
@@ -332,7 +356,7 @@ class Connections:
 
     def _wrong_qos(self, endpoint: _Endpoint) -> Unconnected | None:
         """Return the fault of the QoS of an endpoint; services have the same QoS everywhere."""
-        if endpoint.query.side is CLIENT:
+        if endpoint.query.side in (CLIENT, ACTION_CLIENT):
             return None
         published = self._node.get_publishers_info_by_topic(endpoint.topic)
         subscribed = self._node.get_subscriptions_info_by_topic(endpoint.topic)
@@ -395,6 +419,8 @@ def _argument(rule: str) -> str:
 
 
 def _name_and_type(endpoint: _OwnEndpoint) -> tuple[str, str]:
+    if isinstance(endpoint, tuple):
+        return endpoint
     if isinstance(endpoint, Client | Service):
         return endpoint.service_name, type_name(endpoint.srv_type)
     return endpoint.topic_name, type_name(endpoint.msg_type)

@@ -123,7 +123,11 @@ class Simulator:
         else:
             engine = logged.new_engine(prepared.ground)
         self._connections = Connections(
-            self.node, values.switched_off, beside=self._profile.nodes, missing=self._profile.missing
+            self.node,
+            values.switched_off,
+            beside=self._profile.nodes,
+            missing=self._profile.missing,
+            actions=self._profile.actions,
         )
         self.runner = WorldRunner(
             self.node,

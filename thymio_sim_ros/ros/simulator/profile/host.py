@@ -111,6 +111,11 @@ class ProfileHost:
         """Names that the other robot has and this one has not, with the reason."""
         return {missing.name: missing.reason for missing in self.profile.missing}
 
+    def actions(self) -> Mapping[str, str]:
+        """Return the types of the actions of all robots, by their full names."""
+        rows = self.profile.actions
+        return {full_name(self.node, one.robot.names.topic(row.name)): row.type for one in self._robots for row in rows}
+
     def attach(self, runner: WorldRunner, messages: MessageReports) -> None:
         """Serve the world of a runner, before it starts."""
         self._world = RunningWorld(self.node, runner, messages)
