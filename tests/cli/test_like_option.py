@@ -29,6 +29,8 @@ def test_what_cannot_be_is_one_line(capsys: pytest.CaptureFixture[str], words: l
     [
         ([], "desk", "welcome"),
         (["--like", "turtlesim"], "turtlesim", "none"),
+        (["--like", "turtlebot3"], "turtlebot3", "none"),
+        (["--like", "create3"], "turtlebot3", "none"),
         (["--like", "turtlesim", "--playground", "base", "--program", "avoid"], "base", "avoid"),
     ],
 )

@@ -273,3 +273,16 @@ def test_lights_are_animated_for_a_time(sim, act, kind):
     assert len(feedback) > 10
     sim.step(0.1)
     assert dict(sim.world.robots["thymio"].snapshot().leds)["bottom_right"] == (0, 0, 0)
+
+
+def test_places_of_sensors_have_no_prefix_where_robots_have_names(ros, simulation):
+    sim = simulation(like="create3", noise=False, playground=WALL_AHEAD, robot_names=["bot"])
+    hazards, intensities = (
+        ros.collect(HazardDetectionVector, "/bot/hazard_detection"),
+        ros.collect(IrIntensityVector, "/bot/ir_intensity"),
+    )
+    sim.engine.post("bot", MoveRobot(0.26, 0.0, 0.0))
+    sim.engine.post("bot", BodyTwist(0.1, 0.0))
+    sim.until(lambda: hazards and (BUMP, "bump_front_center") in detections(hazards[-1]), seconds=5.0)
+    assert hazards[-1].header.frame_id == "bot/base_link"
+    assert intensities[-1].readings[1].header.frame_id == "ir_intensity_left"
