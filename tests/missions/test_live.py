@@ -17,6 +17,8 @@ from thymio_sim_ros.files.loading import load_playground, read_program
 from thymio_sim_ros.missions import Judge, load_mission
 from thymio_sim_ros.missions.description import described, progress
 from thymio_sim_ros.missions.live import LiveMission, Trouble
+from thymio_sim_ros.missions.shipped import ShippedMission, shipped
+from thymio_sim_ros.missions.trial import judged_run, programs_of_others
 from thymio_sim_ros.sim.commands import MoveRobot
 from thymio_sim_ros.sim.model.fields import FieldError
 
@@ -225,3 +227,39 @@ def test_the_description_has_what_a_pupil_needs() -> None:
     }  # fmt: skip
     assert found["programs"]["vpl"].startswith("<")
     assert json.loads(json.dumps(found)) == found
+
+
+SOLVED = [
+    pytest.param(each, language, id=f"{each.name}-{language}", marks=[pytest.mark.slow] if at % 4 else [])
+    for at, (each, language) in enumerate(
+        (each, language)
+        for step in shipped()
+        for each in step.missions
+        for language in each.mission.solutions
+        if language != "ros"
+    )
+]
+
+
+@pytest.mark.parametrize(("shipped_one", "language"), SOLVED)
+def test_a_shipped_mission_gets_live_what_it_gets_headless(shipped_one: ShippedMission, language: str) -> None:
+    mission = shipped_one.mission
+    solution = mission.solutions[language]
+    judge = judged_run(mission, solution)
+    assert all(judge.verdict.stars)
+    playground = load_playground(mission.playground)[1]
+    engine = Engine(playground, behaviour="menu")  # as robots without a program are on the page
+    live = LiveMission(mission, engine, engine.reset)
+    for robot, other in programs_of_others(mission, playground).items():
+        engine.load(robot, other)
+    for name in engine.hosts:
+        engine.apply(Controlled(name, "stop"))
+    engine.load(live.robot, read_program(solution))
+    live.before_tick()
+    while live.is_running:
+        engine.step()
+        live.after_tick()
+        live.before_tick()
+    assert live.judge is not None
+    assert live.verdict == judge.verdict
+    assert live.judge.trace == judge.trace

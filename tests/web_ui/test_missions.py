@@ -61,6 +61,8 @@ def test_from_the_address_to_the_third_star_and_back(suite, own_page):
     page.locator("[data-start=missions]").click()
     page.locator(".mission-choice").first.wait_for()
     assert page.locator(".mission-choice").count() == len(MISSIONS)
+    titles = [f"{at}. {step.titles['en']}" for at, step in enumerate(shipped(), start=1)]
+    assert page.locator(".mission-list h3").all_inner_texts() == titles
     stars, played = 0, []
     for mission in MISSIONS:
         if stars >= 3:

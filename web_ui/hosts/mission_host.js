@@ -3,6 +3,7 @@
 
 import { localStore } from "../browser/local_storage.js";
 import { Progress } from "../missions/progress.js";
+import { fetchMissions } from "../missions/steps.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { attemptOf, CONNECTION } from "../state/index.js";
 import { missionText } from "../state/mission.js";
@@ -47,6 +48,7 @@ export class MissionHost {
 
   /** Show the list of missions. */
   async openList() {
+    /** @type {ReturnType<typeof fetchMissions> | null} */ let first = fetchMissions(); // while the module is loaded
     const [module, context] = [await this.#load(), this.#context];
     if (module === null || context === null) return;
     const { store, text, language } = context;
@@ -54,7 +56,11 @@ export class MissionHost {
       t: module.missionTranslator(language),
       language,
       progress: this.progress,
-      steps: module.fetchMissions,
+      steps: () => {
+        const steps = first ?? fetchMissions();
+        first = null;
+        return steps;
+      },
       choose: (name) => void this.start(name),
       open: (file) => void this.openFile(file),
       reason: () => disabledReason(store.state, text("page")),

@@ -175,7 +175,7 @@ export class MissionCard {
           ...this.#result(mission, attempt),
           this.#task(mission, attempt),
           this.#checklist(mission, attempt),
-          ...this.#hintList(mission),
+          ...(attempt?.state === "passed" ? [] : this.#hintList(mission)),
         ),
       () => this.body.querySelector("[data-mission-do='next'], [data-mission-do='again'], button"),
     );
@@ -308,7 +308,7 @@ export class MissionCard {
       "button",
       {
         type: "button",
-        class: "btn soft",
+        class: "btn soft slim",
         "data-mission-do": "hint",
         onclick: () => {
           this.#hints += 1;
@@ -334,11 +334,11 @@ export class MissionCard {
     const { t } = this;
     const show = async () => {
       const next = await this.commands.step();
-      this.#step = next === null ? t("step.none") : t("step.next", { what: next });
+      this.#step = next === null ? t("showStep.none") : t("showStep.next", { what: next });
       this.context.announce(this.#step);
       this.context.scene.invalidate();
     };
-    return h("button", { type: "button", class: "btn", "data-mission-do": "step", onclick: () => void show() }, icon("eye", { small: true }), t("step"));
+    return h("button", { type: "button", class: "btn line slim", "data-mission-do": "step", onclick: () => void show() }, icon("eye", { small: true }), t("showStep"));
   }
 
   /** Tell screen readers what has changed. @param {Mission} mission @param {Try | null} attempt */

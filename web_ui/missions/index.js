@@ -7,7 +7,7 @@ import "./missions.css";
 
 export { MissionCard } from "./card.js";
 export { nextStep } from "./next_step.js";
-export { fetchMissions, openList } from "./list.js";
+export { openList } from "./list.js";
 
 /** @param {string} language */
 export function missionTranslator(language) {

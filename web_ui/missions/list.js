@@ -4,22 +4,9 @@ import { h } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { firstOf, starRow } from "./stars.js";
 
-/** @typedef {Readonly<Record<string, string>>} ByLanguage */
-/** @typedef {{ name: string, titles: ByLanguage, picture: string, stars: number, languages: readonly string[] }} Listed */
-/** @typedef {{ name: string, titles: ByLanguage, missions: readonly Listed[] }} Step */
-
-/** Where the server has the list. */
-export const LIST = "missions.json";
-
-/** @returns {Promise<readonly Step[] | null>}  null: the server did not answer */
-export async function fetchMissions() {
-  try {
-    const answer = await fetch(LIST);
-    return answer.ok ? ((await answer.json()).steps ?? []) : null;
-  } catch {
-    return null;
-  }
-}
+/** @typedef {import("./steps.js").ByLanguage} ByLanguage */
+/** @typedef {import("./steps.js").Listed} Listed */
+/** @typedef {import("./steps.js").Step} Step */
 
 /** @param {ByLanguage} titles @param {string} language */
 export function titleIn(titles, language) {
@@ -58,7 +45,7 @@ export function openList({ t, language, progress, steps, choose, open, reason })
     dialog.close();
     open(file);
   });
-  const file = h("button", { type: "button", class: "btn line", onclick: () => input.click() }, icon("open"), h("span", {}, t("list.file")));
+  const file = h("button", { type: "button", class: "btn line mission-open", title: t("list.file"), onclick: () => input.click() }, icon("open"), h("span", {}, t("list.file")));
   const dialog = h(
     "dialog",
     { class: "mission-list", "aria-labelledby": "mission-list-title" },
