@@ -333,14 +333,19 @@ class Page {
 
   /** Open a file that was dropped. @param {File} file @param {import("./browser/opened_file.js").Place} place */
   #open(file, place) {
-    const { program, creator, actions, messageAt } = this;
+    const { program, creator, mission, actions, messageAt } = this;
     /** @param {string} words */
     const refuse = (words) => messageAt.show(place, [h("p", {}, words)], this.#pageText("notice.dismiss"));
     messageAt.hide();
     this.opened.note(file, place);
     if (creator.isOpen && !isProgram(file)) creator.openFile(file, place);
     else if (program.isOpen && isProgram(file)) void program.openFile(file);
-    else void program.openOther(file).then((isOpened) => (isOpened ? undefined : actions.loadFile(file, refuse)));
+    else {
+      void program
+        .openOther(file)
+        .then((isOpened) => isOpened || mission.openOther(file))
+        .then((isOpened) => (isOpened ? undefined : actions.loadFile(file, refuse)));
+    }
   }
 }
 

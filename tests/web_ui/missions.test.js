@@ -8,6 +8,7 @@ import texts from "../../web_ui/i18n/missions.texts.js";
 import { translator } from "../../web_ui/i18n/index.js";
 import { outcome, starTexts } from "../../web_ui/missions/card.js";
 import { firstOpen, titleIn } from "../../web_ui/missions/list.js";
+import { looksLikeMission } from "../../web_ui/missions/mission_file.js";
 import { blockWords, codeLines, firstMissing, nextStep } from "../../web_ui/missions/next_step.js";
 import { Progress } from "../../web_ui/missions/progress.js";
 import { fetchMissions } from "../../web_ui/missions/steps.js";
@@ -247,4 +248,13 @@ test("the next block is said in words", async () => {
   const course = readFileSync(new URL("../../docs/course/3-blocks/programs/solution.aesl", import.meta.url), "utf8");
   assert.equal(await nextStep({ kind: "blocks", solution: course, own: course, language: "de" }), null);
   assert.ok(await nextStep({ kind: "blocks", solution: course, own: "", language: "de" }));
+});
+
+test("a file that is dropped is a mission by what is in it", () => {
+  const bytes = (/** @type {string} */ text) => new TextEncoder().encode(text);
+  assert.ok(looksLikeMission(bytes('{"format": 1, "facts": {}, "success": "far"}')));
+  assert.ok(looksLikeMission(bytes("PK\u0003\u0004 mission.json")));
+  for (const other of ['{"format": 1, "shapes": []}', "[]", "null", "<network>", "", "PK\u0003\u0004 playground.json"]) {
+    assert.ok(!looksLikeMission(bytes(other)), other);
+  }
 });

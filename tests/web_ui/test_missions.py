@@ -11,7 +11,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import wait_for_port
-from tests.web_ui.page_support import MARKS, open_page, resize
+from tests.web_ui.page_support import MARKS, drop_file, open_page, resize
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from tests.web_ui.test_welcome import visit
 from thymio_sim_ros.missions.shipped import shipped
@@ -149,8 +149,7 @@ def test_only_the_languages_of_the_mission_are_offered_and_own_work_stays(world,
     assert any("my own work" in each["text"] for each in kept)
 
     mission.write_text(json.dumps(file | {"success": "fat"}))  # a refused file leaves the open mission as it is
-    page.locator("#missions-open").click()
-    page.locator("#mission-file").set_input_files(str(mission))
+    drop_file(page, mission, "#view")
     notice = page.locator(".notice.error")
     notice.locator("summary").click()
     playwright.expect(notice).to_contain_text("mine.json: success: found 'fat', expected a fact: 'far'")

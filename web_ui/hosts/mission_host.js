@@ -2,6 +2,7 @@
 // demand; a visit without a mission loads nothing.
 
 import { localStore } from "../browser/local_storage.js";
+import { looksLikeMission } from "../missions/mission_file.js";
 import { Progress } from "../missions/progress.js";
 import { fetchMissions } from "../missions/steps.js";
 import { disabledReason } from "../state/disabled_reason.js";
@@ -82,6 +83,14 @@ export class MissionHost {
     }
     this.#context?.welcome.close();
     await actions.startMission(file.name, new Uint8Array(await file.arrayBuffer()));
+  }
+
+  /** Start the mission of a file that was dropped; returns whether it is one. @param {File} file */
+  async openOther(file) {
+    if (!/\.(json|zip)$/i.test(file.name) || file.size > LARGEST_MISSION) return false;
+    if (!looksLikeMission(new Uint8Array(await file.arrayBuffer()))) return false;
+    await this.openFile(file);
+    return true;
   }
 
   /** Call once per frame. @param {State} state */

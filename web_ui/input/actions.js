@@ -213,7 +213,8 @@ export class Actions {
   }
 
   /**
-   * Start a mission: a shipped one by its name, or that of a file. Returns whether it was started.
+   * Start a mission: a shipped one by its name, or that of a file (JSON, or a ZIP archive). Returns whether it was started.
+   * If not, a notice says why, with the place in the file; the mission before goes on, unless the playground was replaced.
    *
    * @param {string} name
    * @param {Uint8Array} [content]   of a file
