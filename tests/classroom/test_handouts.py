@@ -149,6 +149,20 @@ def test_stars_tries_and_time_of_a_mission_come_from_the_suite(group: Group) -> 
     assert seat.progress.program(group.classroom.handouts.find(number)) == "var mine = 1"
 
 
+def test_a_shipped_mission_is_handed_out_by_its_name_and_to_more_pupils_later(group: Group) -> None:
+    number = group.hand_out(kind="mission", name="forward", content="", title="Off you go", pupils=["ada"])
+    assert group.open("ada", number) == {"kind": "mission", "name": "forward", "content": ""}
+    group.classroom.seats["ada"]._on_try(MissionTry("forward", 1, True, 1, 3.0, ""))
+    assert group.hand_out(kind="mission", name="forward", content="", pupils=["ben"]) == number
+    [handout] = group.ask("GET", "handouts")
+    assert (handout["progress"]["ada"]["stars"], handout["progress"]["ben"]["stars"]) == (1, 0)
+    assert group.page("ben")[0]["name"] == "Off you go"
+    group.hand_out(kind="mission", name="forward", content=encoded(MISSION))
+    assert [one["name"] for one in group.ask("GET", "handouts")] == ["forward", "forward 2.json"]
+    with pytest.raises(RefusedError):
+        group.hand_out(kind="mission", name="../forward", content="")
+
+
 def test_the_table_has_a_row_for_each_pupil_and_says_who_is_late(group: Group) -> None:
     number = group.hand_out(due="2001-01-01T00:00:00+00:00")
     group.open("ada", number)
@@ -178,7 +192,7 @@ def test_names_of_files_are_text_and_differ(group: Group) -> None:
     for name in (STRANGE, STRANGE, "program.aesl", "..", "x" * 300 + ".aesl"):
         group.hand_out(name=name)
     names = [one["name"] for one in group.ask("GET", "handouts")]
-    assert names[:4] == ["script___bus_.aesl", "script___bus_ 2.aesl", "program 2.aesl", "file"]
+    assert names[:4] == ["script___bus_.aesl", "script___bus_ 2.aesl", "program 2.aesl", "file.aesl"]
     assert len(names[4]) == 80
     assert sorted(path.name for path in group.path.iterdir()) == ["class.json", "handouts", "pupils"]
 

@@ -59,7 +59,7 @@ test("how far a pupil is with a hand-out is said in a few words", () => {
   const nothing = { opened: "", changed: "", tries: 0, stars: 0, passed: "", best_s: 0, late: false };
   /** @param {"program" | "mission"} kind @param {object} [progress] */
   const words = (kind, progress) => {
-    const handout = { id: "a", kind, name: "bus.json", pupils: [], due: "", solution_of: "", progress: {} };
+    const handout = { id: "a", kind, name: "bus.json", title: "", pupils: [], due: "", solution_of: "", progress: {} };
     return progressText(handout, progress && { ...nothing, ...progress }, t, clock);
   };
   assert.equal(words("program"), "–");

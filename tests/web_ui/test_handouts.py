@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import sys
 import zipfile
 from collections.abc import Iterator
@@ -162,3 +163,28 @@ def test_a_solution_a_playground_and_a_link_of_the_class(group: RunningClass, pa
     teacher.locator("[data-verb=takeBack]").first.click()
     teacher.click("[data-verb=yes]")
     pupil.wait_for_function("() => document.querySelectorAll('#pupil-sheet [data-handout]').length === 2")
+
+
+def test_stars_of_a_mission_that_was_handed_out_are_in_the_table(group: RunningClass, page, other_page) -> None:
+    teacher, pupil = page, other_page
+    teacher.goto(group.address)
+    teacher.locator("#count", has_text="2 / 2").wait_for()
+    teacher.click("[data-verb=handouts]")
+    teacher.click("[data-verb=handout]")
+    teacher.select_option("#handout-mission", "forward")
+    teacher.click("[data-verb=give]")
+    teacher.locator("th .handout-name", has_text="Off you go").wait_for()
+
+    open_page(pupil, page_of(group, "ada"))
+    open_menu(pupil, "#pupil")
+    pupil.locator("#pupil-sheet [data-handout]", has_text="Off you go").click()
+    pupil.click("[data-share=open]")
+    pupil.click("[data-mission-language=text]")
+    pupil.locator(".cm-content").fill(
+        "onevent buttons\nwhen button.forward == 1 do\nmotor.left.target = 300\nmotor.right.target = 300\nend"
+    )
+    pupil.click("[data-verb=run]")
+    teacher.locator("td", has_text="★★").wait_for()
+    teacher.locator("td", has_text="tries: 1").wait_for()
+    with zipfile.ZipFile(io.BytesIO(group.request("programs.zip"))) as archive:
+        assert b"motor.left.target = 300" in archive.read("Ada/forward.aesl")

@@ -26,6 +26,7 @@ from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import read_text, write_text
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.files.loading import load_playground
+from thymio_sim_ros.files.resources import missions_folder
 
 __all__ = ["KINDS", "MAX_CONTENT", "MAX_HANDOUTS", "Handout", "Handouts", "check_time", "checked_content", "now"]
 
@@ -36,7 +37,9 @@ MAX_CONTENT = 4_000_000
 """Bytes of one of them."""
 MAX_NAME, MAX_ENDING = 80, 12
 """Characters of the name of a file, and of its ending."""
+MAX_TITLE = 200
 _FILE = "handouts.json"
+_ENDINGS = {"program": "aesl", "playground": "json", "mission": "json"}
 _RESERVED = frozenset({"program", "draft"})
 """Names of files that the zip with the work of the class has beside those of hand-outs."""
 _ID = re.compile(r"[\w-]{8,20}")
@@ -55,11 +58,17 @@ class Handout:
     due: str = ""
     solution_of: str = ""
     """Id of the hand-out whose solution this is."""
+    title: str = ""
+    """Of a shipped mission, in the language of the teacher."""
 
     @property
     def stem(self) -> str:
         """Its name without the ending: the name of the pupil's program for it."""
         return self.name.rpartition(".")[0] or self.name
+
+    def is_shipped_as(self, name: str) -> bool:
+        """Whether it is the shipped mission of this name: files have an ending."""
+        return self.kind == "mission" and self.name == name and "." not in name
 
     def is_late(self, at: str) -> bool:
         """Whether something at this time was after the date by which it is due."""
@@ -97,14 +106,31 @@ class Handouts:
         return (self._path / f"{handout.id}.bin").read_bytes()
 
     def add(
-        self, kind: str, name: str, content: bytes, pupils: Iterable[str], *, due: str = "", solution_of: str = ""
+        self,
+        kind: str,
+        name: str,
+        content: bytes,
+        pupils: Iterable[str],
+        *,
+        due: str = "",
+        solution_of: str = "",
+        title: str = "",
     ) -> Handout:
-        """Hand out a file whose content was checked. Raises ClassError where there are too many, and OSError."""
+        """Hand out a file whose content was checked. Raises ClassError where there are too many, and OSError.
+
+        Without content it is a shipped mission of that name; one that some pupils have already is given to others, too.
+        """
+        if content == b"" and (given := next((one for one in self._all.values() if one.is_shipped_as(name)), None)):
+            wider = replace(given, pupils=tuple(dict.fromkeys((*given.pupils, *pupils))), due=due)
+            self._keep({**self._all, wider.id: wider})
+            return wider
         if len(self._all) >= MAX_HANDOUTS:
             raise ClassError(f"found {MAX_HANDOUTS} hand-outs, expected fewer: remove one that is no longer needed")
-        handout = Handout(secrets.token_urlsafe(9), kind, self._free_name(name), tuple(pupils), now(), due, solution_of)
-        write_file(str(self._path / f"{handout.id}.bin"), content, mode=0o600)
-        self._keep({**self._all, handout.id: handout})
+        unused = name if content == b"" else self._free_name(kind, name)
+        number = secrets.token_urlsafe(9)
+        handout = Handout(number, kind, unused, tuple(pupils), now(), due, solution_of, title[:MAX_TITLE])
+        write_file(str(self._path / f"{number}.bin"), content, mode=0o600)
+        self._keep({**self._all, number: handout})
         return handout
 
     def give(self, handout: Handout, pupil: str) -> Handout:
@@ -125,16 +151,15 @@ class Handouts:
         write_text(self._path / _FILE, json.dumps([asdict(one) for one in handouts.values()], indent=2) + "\n")
         self._all = dict(handouts)
 
-    def _free_name(self, name: str) -> str:
-        plain = _file_name(name)
+    def _free_name(self, kind: str, name: str) -> str:
+        plain = _file_name(kind, name)
         stem, dot, ending = plain.rpartition(".")
-        stem, ending = (stem, dot + ending) if stem else (plain, "")
         taken = {one.stem.casefold() for one in self._all.values()} | _RESERVED
         unused, number = stem, 1
         while unused.casefold() in taken:
             number += 1
             unused = f"{stem} {number}"
-        return unused + ending
+        return f"{unused}{dot}{ending}"
 
 
 def now() -> str:
@@ -149,7 +174,12 @@ def check_time(text: str) -> None:
 
 
 def checked_content(kind: str, name: str, encoded: str) -> bytes:
-    """The content of a file in base64, if it is what its kind says. Takes a while. Raises ClassError."""
+    """The content of a file in base64, if it is what its kind says. Takes a while. Raises ClassError.
+
+    "" is the content of a shipped mission.
+    """
+    if kind == "mission" and encoded == "" and name in _shipped():
+        return b""
     try:
         content = base64.b64decode(encoded, validate=True)
     except ValueError as error:
@@ -162,13 +192,23 @@ def checked_content(kind: str, name: str, encoded: str) -> bytes:
             if text.lstrip().startswith("<"):
                 read_aesl(text, is_strict=False)
         elif kind == "playground":
-            load_playground(f"data:;name={_file_name(name).replace(';', '_')};base64,{encoded}")
+            load_playground(f"data:;name={_file_name(kind, name).replace(';', '_')};base64,{encoded}")
         elif not content.startswith(b"PK"):
             _check_mission(content)
     except (AsebaError, ThymioSimError, OSError, ValueError, RecursionError) as error:
         text = str(error)
         raise ClassError(text if text.startswith(f"{name}: ") else f"{name}: {text}") from error
     return content
+
+
+def _shipped() -> set[str]:
+    """The names of the shipped missions. Raises ClassError."""
+    folder = missions_folder()
+    try:
+        listed = json.loads((folder / "index.json").read_text("utf-8")) if folder else {"steps": []}
+        return {name for step in listed["steps"] for name in step["missions"]}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ClassError(f"{folder}/index.json: {error}; expected the list of missions: install again") from error
 
 
 def _check_mission(content: bytes) -> None:
@@ -178,21 +218,25 @@ def _check_mission(content: bytes) -> None:
         raise ValueError("expected a mission: a JSON file with the field success (docs/missions.md)")
 
 
-def _file_name(name: str) -> str:
-    """The name of a file without folders and characters that some system does not allow."""
+def _file_name(kind: str, name: str) -> str:
+    """The name of a file without folders and characters that some system does not allow, with an ending."""
     plain = unicodedata.normalize("NFC", name).replace("\\", "/").rpartition("/")[2]
     plain = re.sub(r'[<>:"|?*\x00-\x1f\x7f]', "_", plain).strip(" .")
     stem, dot, ending = plain.rpartition(".")
     if stem and len(ending) < MAX_ENDING:
         return f"{stem[: MAX_NAME - len(ending) - 1]}{dot}{ending}"
-    return plain[:MAX_NAME] or "file"
+    return f"{plain[:MAX_NAME] or 'file'}.{_ENDINGS[kind]}"
 
 
 def _handout(fields: dict[str, Any]) -> Handout:
     handout = Handout(**{**fields, "pupils": tuple(fields["pupils"])})
-    texts = (handout.id, handout.kind, handout.name, handout.given, handout.due, handout.solution_of, *handout.pupils)
+    texts = (handout.id, handout.kind, handout.name, handout.given, handout.due, handout.solution_of, handout.title)
     if handout.due != "":
         check_time(handout.due)
-    if not all(isinstance(text, str) for text in texts) or not _ID.fullmatch(handout.id) or handout.kind not in KINDS:
+    if (
+        not all(isinstance(text, str) for text in (*texts, *handout.pupils))
+        or not _ID.fullmatch(handout.id)
+        or handout.kind not in KINDS
+    ):
         raise ValueError(f"found the hand-out {str(fields.get('name'))!r:.60} with invalid fields")
     return handout

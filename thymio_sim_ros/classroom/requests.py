@@ -134,10 +134,11 @@ async def _lower(classroom: Classroom, fields: Mapping[str, Any]) -> None:
 
 async def _hand_out(classroom: Classroom, fields: Mapping[str, Any]) -> None:
     kind, name, content, due = (fields.get(key) for key in ("kind", "name", "content", "due"))
+    title = fields.get("title", "")
     if kind not in KINDS:
         raise RefusedError(400, f"kind: expected {', '.join(KINDS)}")
-    if not isinstance(name, str) or not isinstance(content, str):
-        raise RefusedError(400, "name, content: expected texts")
+    if not isinstance(name, str) or not isinstance(content, str) or not isinstance(title, str):
+        raise RefusedError(400, "name, content, title: expected texts")
     if not isinstance(due, str):
         raise RefusedError(400, "due: expected a time, or an empty text")
     if due:
@@ -149,7 +150,9 @@ async def _hand_out(classroom: Classroom, fields: Mapping[str, Any]) -> None:
     pupils = _pupils(classroom, fields)
     try:
         data = await asyncio.to_thread(checked_content, kind, name, content)
-        await classroom.hand_out(classroom.handouts.add(kind, name, data, pupils, due=due, solution_of=solution_of))
+        await classroom.hand_out(
+            classroom.handouts.add(kind, name, data, pupils, due=due, solution_of=solution_of, title=title)
+        )
     except ClassError as error:
         raise RefusedError(400, str(error)) from error
     except OSError as error:

@@ -208,9 +208,9 @@ class Seat:
         return {
             "id": handout.id,
             "kind": handout.kind,
-            "name": handout.name,
+            "name": handout.title or handout.name,
             "due": handout.due,
-            "solution_of": "" if solved is None else solved.name,
+            "solution_of": "" if solved is None else solved.title or solved.name,
             "opened": progress.opened != "",
             "stars": progress.stars,
         }

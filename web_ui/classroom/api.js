@@ -69,6 +69,17 @@ export class ClassApi {
     return (await this.#fetch("handouts")).json();
   }
 
+  /**
+   * The shipped missions in steps, from the simulator of a pupil; none if it does not answer.
+   *
+   * @param {string} pupil
+   * @returns {Promise<readonly import("../missions/list.js").Step[]>}
+   */
+  async missions(pupil) {
+    const answer = await fetch(`../p/${pupil}/missions.json`).catch(() => null);
+    return answer?.ok ? ((await answer.json()).steps ?? []) : [];
+  }
+
   /** A link with which pupils open a hand-out. @param {string} id @returns {Promise<{ name: string, url: string, qr: string }>} */
   async handoutLink(id) {
     return (await this.#fetch(`handouts/${id}`)).json();

@@ -1,12 +1,13 @@
 // The dialog in which a teacher hands out a file: what, to whom, and until when.
 
 import { LinkError, sharedPart, unpacked } from "../sharing/link.js";
+import { titleIn } from "../missions/list.js";
 import { h, setText } from "../ui/dom.js";
 import { open } from "./dialogs.js";
 
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 /** @typedef {import("../sharing/link.js").Kind} Kind */
-/** @typedef {{ kind: Kind, name: string, content: string, pupils: string[] | null, due: string, solution_of: string }} Given   content: base64 */
+/** @typedef {{ kind: Kind, name: string, content: string, pupils: string[] | null, due: string, solution_of: string, title: string }} Given   content: base64; "": a shipped mission */
 
 /** As the server allows (thymio_sim_ros/classroom/handouts.py). */
 export const LARGEST = 4_000_000;
@@ -38,13 +39,22 @@ export function base64(bytes) {
  *
  * @param {object} options
  * @param {Translate} options.t
+ * @param {string} options.language
  * @param {readonly { id: string, name: string }[]} options.pupils
+ * @param {readonly import("../missions/list.js").Step[]} options.missions   that are shipped
  * @param {{ id: string, name: string, pupils: readonly string[] } | null} options.task   what a solution is for; null: it is none
  * @param {(given: Given) => Promise<void>} options.send   throws an Error with the reason of the server
  */
-export function askHandOut({ t, pupils, task, send }) {
+export function askHandOut({ t, language, pupils, missions, task, send }) {
   const file = h("input", { type: "file", id: "handout-file", accept: ".aesl,.aseba,.txt,.json,.playground,.xml,.zip" });
   const link = h("input", { class: "input", id: "handout-link", autocomplete: "off", spellcheck: "false" });
+  const groups = missions.map(({ titles, missions: ofStep }) => {
+    const group = h("optgroup", { label: titleIn(titles, language) });
+    group.append(...ofStep.map(({ name, titles: ofMission }) => h("option", { value: name }, titleIn(ofMission, language))));
+    return group;
+  });
+  const mission = h("select", { id: "handout-mission", class: "select" }, h("option", { value: "" }, t("handout.noMission")), ...groups);
+  const hasMissions = missions.length > 0 && task === null;
   const due = h("input", { type: "datetime-local", class: "input", id: "handout-due" });
   const boxes = pupils.map(({ id, name }) => {
     const box = h("input", { type: "checkbox", value: id, checked: task === null || task.pupils.includes(id) });
@@ -67,6 +77,10 @@ export function askHandOut({ t, pupils, task, send }) {
       const content = new Uint8Array(await chosen.arrayBuffer());
       return { kind: kindOfFile(chosen.name, content), name: chosen.name, content };
     }
+    if (mission.value !== "") {
+      const title = mission.selectedOptions[0].textContent ?? "";
+      return { kind: /** @type {const} */ ("mission"), name: mission.value, title, content: new Uint8Array() };
+    }
     const part = sharedPart(link.value);
     if (part === null) return refuse(t(link.value.trim() === "" ? "handout.nothing" : "handout.badLink"));
     return unpacked(part).catch((error) => {
@@ -85,6 +99,7 @@ export function askHandOut({ t, pupils, task, send }) {
       await send({
         kind: given.kind,
         name: given.name,
+        title: "title" in given ? given.title : "",
         content: base64(given.content),
         pupils: chosen.length === pupils.length ? null : chosen,
         due: due.value === "" ? "" : new Date(due.value).toISOString(),
@@ -109,6 +124,7 @@ export function askHandOut({ t, pupils, task, send }) {
       file,
       h("label", { for: "handout-link" }, t("handout.link")),
       link,
+      ...(hasMissions ? [h("label", { for: "handout-mission" }, t("handout.mission")), mission] : []),
       h("label", { for: "handout-due" }, t("handout.due")),
       due,
       h(

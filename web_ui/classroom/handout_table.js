@@ -11,6 +11,7 @@ import { qrImages } from "./sheet.js";
  * @property {string} id
  * @property {"program" | "playground" | "mission"} kind
  * @property {string} name
+ * @property {string} title   of a shipped mission, else ""
  * @property {string[]} pupils
  * @property {string} due
  * @property {string} solution_of
@@ -97,15 +98,15 @@ export class HandoutTable {
   /** @param {Handout} handout @param {readonly Handout[]} all */
   #head(handout, all) {
     const { t, actions } = this;
-    const { id, kind, name, due, solution_of: solutionOf } = handout;
+    const { id, kind, name, title, due, solution_of: solutionOf } = handout;
     const task = all.find((each) => each.id === solutionOf);
-    const about = [task === undefined ? t(`kind.${kind}`) : t("handout.solution", { name: task.name }), due === "" ? "" : t("handouts.due", { time: this.clock(due) })];
+    const about = [task === undefined ? t(`kind.${kind}`) : t("handout.solution", { name: task.title || task.name }), due === "" ? "" : t("handouts.due", { time: this.clock(due) })];
     const button = (/** @type {string} */ verb, /** @type {import("../ui/icons.js").IconName} */ sign, /** @type {() => void} */ act) =>
       h("button", { type: "button", class: "btn icon", "data-verb": verb, title: t(verb), "aria-label": `${t(verb)}: ${name}`, onclick: act }, icon(sign));
     return h(
       "th",
       { scope: "col", "data-handout": id },
-      h("span", { class: "handout-name" }, name),
+      h("span", { class: "handout-name" }, title || name),
       h("span", { class: "small muted" }, about.filter((part) => part !== "").join(" · ")),
       h(
         "span",

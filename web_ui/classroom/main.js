@@ -201,13 +201,14 @@ class TeacherPage {
   async #handouts() {
     const { t, api } = this;
     /** @param {import("./handout_table.js").Handout | null} task */
-    const give = (task) => {
+    const give = async (task) => {
+      const missions = await api.missions(this.pupils[0]?.id ?? "");
       const send = async (/** @type {import("./hand_out.js").Given} */ given) => {
         await api.handOut(given);
         await this.#fillTable();
         setText(byId("live"), t("handout.given"));
       };
-      askHandOut({ t, pupils: this.pupils, task, send });
+      askHandOut({ t, language: this.language.language, pupils: this.pupils, missions, task, send });
     };
     this.#replaceMain((back) => {
       this.table = new HandoutTable(t, this.language.language, {
@@ -215,10 +216,10 @@ class TeacherPage {
           this.table = null;
           back();
         },
-        give: () => give(null),
+        give: () => void this.#act(() => give(null)),
         results: () => void this.#act(async () => save(await api.results(), "results.csv")),
         link: ({ id }) => void this.#act(async () => showContent(linkContent(await api.handoutLink(id), t), "link-title", t)),
-        solution: give,
+        solution: (task) => void this.#act(() => give(task)),
         takeBack: ({ id, name }) =>
           ask({ question: t("takeBack.ask", { name }), verb: t("takeBack"), t, act: () => void this.#act(() => api.takeBack(id)) }),
       });

@@ -155,6 +155,7 @@ export class Head {
       label,
       entries: () => [
         { label: t("file.save"), icon: "save", act: () => this.#save(), attributes: { "data-verb": "save" } },
+        { label: t("file.share"), icon: "share", act: () => this.#share(), attributes: { "data-verb": "share" } },
         { label: t("file.open"), icon: "open", act: () => file.click(), attributes: { "data-verb": "open" } },
         { label: t("file.new"), icon: "file", act: () => this.#create(), attributes: { "data-verb": "new" } },
       ],
@@ -181,6 +182,14 @@ export class Head {
     download(file.name, file.content, isMission ? "application/zip" : "application/json");
     session.noteSaved();
     report({ word: "status.saved", values: { name: file.name } });
+  }
+
+  #share() {
+    const { session, context } = this.options;
+    const { share } = context;
+    if (session.model.playground.mission === undefined) return void share.sharePlayground(session.fileName, session.text);
+    const file = this.packMission();
+    if (file !== null) void share.shareMission(file.name, file.content);
   }
 
   #create() {

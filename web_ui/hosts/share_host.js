@@ -4,7 +4,7 @@
 import { textOf } from "../browser/text_file.js";
 import { translator } from "../i18n/index.js";
 import { languageOf } from "../program_tab/language_choice.js";
-import { HANDOUT, LinkError, packed, PARAMETER, sharedPart, unpacked } from "../sharing/link.js";
+import { HANDOUT, isShipped, LinkError, packed, PARAMETER, sharedPart, unpacked } from "../sharing/link.js";
 import { CONNECTION } from "../state/index.js";
 import { PARAMETERS } from "../state/names.js";
 import { LANGUAGES } from "./program_host.js";
@@ -71,6 +71,11 @@ export class ShareHost {
     return this.#share({ kind: "playground", name, content: new TextEncoder().encode(text) });
   }
 
+  /** Share a mission. @param {string} name  of its file @param {Uint8Array<ArrayBuffer>} content */
+  shareMission(name, content) {
+    return this.#share({ kind: "mission", name, content });
+  }
+
   /** Ask for a link. @param {string} [trouble]  why the last one was refused */
   async openField(trouble = "") {
     const loaded = await this.#load();
@@ -105,7 +110,7 @@ export class ShareHost {
     if (loaded === null) return;
     const { dialogs, t } = loaded;
     const text = await textOf(new File([item.content], item.name));
-    if (text === null) return this.openField(t("bad.damaged"));
+    if (text === null && item.kind === "program") return this.openField(t("bad.damaged"));
     dialogs.openReceived({
       t,
       item,
@@ -123,7 +128,7 @@ export class ShareHost {
     const { parameters } = this.#context.store.state;
     const place = sharedAddress(location.href, Boolean(parameters[PARAMETERS.pupil]));
     const address = `${place}#${PARAMETER}=${await packed(item)}`;
-    const about = describe(item, new TextDecoder().decode(item.content), loaded);
+    const about = describe(item, await textOf(new File([item.content], item.name)), loaded);
     loaded.dialogs.openShare({ t: loaded.t, item, about, address, isLocal: LOCAL.test(location.hostname) });
   }
 
@@ -147,12 +152,13 @@ export class ShareHost {
     }
   }
 
-  /** @param {Item} item @param {string} text */
+  /** @param {Item} item @param {string | null} text  null: an archive */
   async #open({ kind, name, content }, text) {
-    const { program, creator, actions, workspace } = /** @type {Context} */ (this.#context);
-    if (kind === "program") return program.openBeside(name, text);
+    const { program, creator, mission, actions, workspace } = /** @type {Context} */ (this.#context);
+    if (kind === "program") return program.openBeside(name, text ?? "");
+    if (kind === "mission") return isShipped({ content }) ? mission.start(name) : mission.openFile(new File([content], name));
     workspace.select("playground");
-    creator.keepCopy(text);
+    creator.keepCopy(text ?? "");
     return actions.loadPlayground(name, content);
   }
 
@@ -179,13 +185,13 @@ function forgetShared() {
   history.replaceState(history.state, "", withoutShared(location.href));
 }
 
-/** @param {Item} item @param {string} text @param {Loaded} loaded @returns {Description} */
+/** @param {Item} item @param {string | null} text @param {Loaded} loaded @returns {Description} */
 function describe({ kind, name }, text, { t, languageName }) {
   if (kind === "program") {
-    const lines = text.trim().split("\n").length;
-    return { title: name, meta: t("meta.program", { language: languageName(languageOf(text, LANGUAGES)), lines }) };
+    const lines = (text ?? "").trim().split("\n").length;
+    return { title: name, meta: t("meta.program", { language: languageName(languageOf(text ?? "", LANGUAGES)), lines }) };
   }
-  return { title: titleIn(text) || name, meta: t(`meta.${kind}`) };
+  return { title: titleIn(text ?? "") || name, meta: t(`meta.${kind}`) };
 }
 
 /** The title in a JSON file; "" for none. @param {string} text */

@@ -4,7 +4,7 @@ import { copyText } from "../browser/clipboard.js";
 import { download } from "../browser/download.js";
 import { h, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
-import { LONGEST_LINK, LONGEST_QR } from "./link.js";
+import { isShipped, LONGEST_LINK, LONGEST_QR } from "./link.js";
 import { qrImage } from "./qr_image.js";
 
 import "./sharing.css";
@@ -14,7 +14,7 @@ import "./sharing.css";
 /** @typedef {{ title: string, meta: string }} Description   of an item, in words */
 /** @typedef {{ verb: string, text: string, look: string, act: () => unknown }} Choice */
 
-const MIME = { program: "application/xml", playground: "application/json", mission: "application/json" };
+const MIME = { program: "application/xml", playground: "application/json", mission: "application/octet-stream" };
 
 /** Save an item on the user's computer. @param {Item} item */
 export function save({ kind, name, content }) {
@@ -108,7 +108,7 @@ export function openReceived({ t, item, about, heading, open, decided }) {
     [h("p", { class: "sharing-name" }, about.title), line(about.meta), line(t(`keeps.${item.kind}`))],
     [
       { verb: "later", text: t("later"), look: "line", act: finish(() => {}) },
-      { verb: "save", text: t("save"), look: "line", act: () => save(item) },
+      ...(isShipped(item) ? [] : [{ verb: "save", text: t("save"), look: "line", act: () => save(item) }]),
       { verb: "open", text: t(`open.${item.kind}`), look: "you", act: finish(open) },
     ],
     t,

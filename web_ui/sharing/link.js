@@ -25,6 +25,9 @@ export const LARGEST = 3_000_000;
 const LONGEST_NAME = 200;
 const VERSION = "1";
 
+/** Whether an item is a mission of the simulator itself: a class hands it out by its name. @param {Pick<Item, "content">} item */
+export const isShipped = ({ content }) => content.length === 0;
+
 /** A link that cannot be opened; `key` of a text with `values` says why. */
 export class LinkError extends Error {
   /** @param {string} key @param {Record<string, string | number>} [values] */
