@@ -86,6 +86,19 @@ def test_a_program_is_handed_out_to_some_and_the_teacher_sees_who_has_opened_and
     assert "jurg-5b" not in handout["progress"]
 
 
+def test_a_program_that_runs_in_a_playground_of_the_teacher_is_still_for_its_task(group: Group) -> None:
+    task = group.hand_out()
+    table = resources.playgrounds()["table"].read_bytes()
+    room = group.hand_out(kind="playground", name="table.json", content=base64.b64encode(table).decode())
+    solution = group.hand_out(name="solution.aesl", solution_of=task)
+    seat = group.classroom.seats["ada"]
+    for number, text in ((task, "var mine = 1"), (room, "var mine = 2"), (solution, "var solved = 1")):
+        group.open("ada", number)
+        group.run("ada", text)
+    works = [seat.progress.program(handout) for handout in group.classroom.handouts.all()]
+    assert works == ["var mine = 2", None, "var solved = 1"]
+
+
 def test_all_of_it_is_there_after_a_restart_of_the_class(group: Group) -> None:
     number = group.hand_out()
     group.open("ada", number)

@@ -47,7 +47,7 @@ class ProgressLog:
         self._of = {number: _progress(one) for number, one in (handouts if isinstance(handouts, dict) else {}).items()}
         current = known.get("current")
         self.current = current if isinstance(current, str) else ""
-        """Id of the hand-out that was opened last."""
+        """Id of the hand-out that programs are for."""
         self._seen = ("", 0)
         """Mission and number of its last try."""
 
@@ -60,8 +60,9 @@ class ProgressLog:
         return read_text(self._program(handout.id))
 
     def open(self, handout: Handout) -> None:
-        """The pupil has opened it: programs that run from now on are for it."""
-        self.current = handout.id
+        """The pupil has opened it: programs that run from now on are for it, unless it is a playground for them."""
+        if handout.kind != "playground":
+            self.current = handout.id
         progress = self.of(handout)
         self._keep(handout.id, progress if progress.opened else replace(progress, opened=now()))
 

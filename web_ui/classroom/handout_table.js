@@ -48,9 +48,10 @@ export function progressText({ kind }, progress, t, clock) {
 }
 
 export class HandoutTable {
-  /** @param {Translate} t @param {string} language @param {TableActions} actions */
-  constructor(t, language, actions) {
+  /** @param {{ t: Translate, language: string, hasLinks: boolean, actions: TableActions }} options   hasLinks: whether pupils can choose their names */
+  constructor({ t, language, hasLinks, actions }) {
     this.t = t;
+    this.hasLinks = hasLinks;
     this.actions = actions;
     this.shown = "";
     const format = new Intl.DateTimeFormat(language, { dateStyle: "short", timeStyle: "short" });
@@ -111,7 +112,7 @@ export class HandoutTable {
       h(
         "span",
         { class: "row" },
-        button("handoutLink", "link", () => actions.link(handout)),
+        ...(this.hasLinks ? [button("handoutLink", "link", () => actions.link(handout))] : []),
         ...(solutionOf === "" ? [button("sendSolution", "idea", () => actions.solution(handout))] : []),
         button("takeBack", "remove", () => actions.takeBack(handout)),
       ),

@@ -24,6 +24,8 @@ import { sheetOf } from "./sheet.js";
 
 /** Time between two requests for the state. */
 const POLL_MS = 500;
+/** The table of hand-outs is larger and changes rarely: it is asked for with every so many requests. */
+const TABLE_POLLS = 4;
 
 /** Save a file on the teacher's computer. @param {Blob} content @param {string} name */
 function save(content, name) {
@@ -114,9 +116,9 @@ class TeacherPage {
 
   /** Ask for the state for ever. A page in the background does not ask: its browser draws nothing. */
   async poll() {
-    for (;;) {
+    for (let count = 0; ; count++) {
       if (!document.hidden) await this.#act(() => this.#refresh());
-      if (!document.hidden && this.table !== null) await this.#act(() => this.#fillTable());
+      if (!document.hidden && this.table !== null && count % TABLE_POLLS === 0) await this.#act(() => this.#fillTable());
       await new Promise((resolve) => setTimeout(resolve, POLL_MS));
     }
   }
@@ -211,17 +213,25 @@ class TeacherPage {
       askHandOut({ t, language: this.language.language, pupils: this.pupils, missions, task, send });
     };
     this.#replaceMain((back) => {
-      this.table = new HandoutTable(t, this.language.language, {
-        back: () => {
-          this.table = null;
-          back();
+      const leave = () => {
+        this.table = null;
+        back();
+      };
+      /** @param {import("./handout_table.js").Handout} handout */
+      const takeBack = ({ id, name, title }) =>
+        ask({ question: t("takeBack.ask", { name: title || name }), verb: t("takeBack"), t, act: () => void this.#act(() => api.takeBack(id)) });
+      this.table = new HandoutTable({
+        t,
+        language: this.language.language,
+        hasLinks: this.hasRoom,
+        actions: {
+          back: leave,
+          give: () => void this.#act(() => give(null)),
+          results: () => void this.#act(async () => save(await api.results(), "results.csv")),
+          link: ({ id }) => void this.#act(async () => showContent(linkContent(await api.handoutLink(id), t), "link-title", t)),
+          solution: (task) => void this.#act(() => give(task)),
+          takeBack,
         },
-        give: () => void this.#act(() => give(null)),
-        results: () => void this.#act(async () => save(await api.results(), "results.csv")),
-        link: ({ id }) => void this.#act(async () => showContent(linkContent(await api.handoutLink(id), t), "link-title", t)),
-        solution: (task) => void this.#act(() => give(task)),
-        takeBack: ({ id, name }) =>
-          ask({ question: t("takeBack.ask", { name }), verb: t("takeBack"), t, act: () => void this.#act(() => api.takeBack(id)) }),
       });
       return this.table.element;
     });
@@ -235,6 +245,8 @@ class TeacherPage {
 
   async #refresh() {
     const { pupils, has_room } = await this.api.state();
+    const raised = pupils.filter(({ id, hand }) => hand !== "" && !this.pupils.some((known) => known.id === id && known.hand === hand));
+    if (raised.length > 0) setText(byId("live"), raised.map(({ name }) => this.t("hand.of", { name })).join(" "));
     this.pupils = pupils;
     this.hasRoom = has_room;
     for (const { plan } of pupils) if (!this.asked.has(plan)) void this.#loadPlan(plan);
