@@ -10,6 +10,9 @@ from typing import Any
 from urllib.parse import urljoin
 
 import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
@@ -22,22 +25,36 @@ from tests.web_ui.page_support import (
     build_playground,
     open_editor,
     open_page,
+    step_into_event,
 )
 from tests.web_ui.tabs import checked_page, new_page, problems_of
+from tests.web_ui.test_editor import click_beside
+from tests.web_ui.test_page_sound import LISTEN, SOUNDING
 from thymio_sim_ros.bridge.protocol.constants import SUBPROTOCOLS
 
 pytestmark = MARKS
 
-PROGRAM = "call leds.top(0, 32, 0)\nmotor.left.target = 200"
+PROGRAM = """\
+var count = 0
+call leds.top(0, 32, 0)
+call sound.freq(440, 0)
+motor.left.target = 200
+timer.period[0] = 50
+onevent timer0
+  count = count + 1
+"""
+HALTED = 7
+"""The line with a breakpoint."""
 PLACE = "() => JSON.stringify(window.thymio.partPosition('robot'))"
 TLS = {"ignore_https_errors": True}
 
 
 @pytest.fixture(scope="module")
 def group(browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningClass]:
-    """A class of three behind a proxy."""
+    """A class of six behind a proxy."""
     path = tmp_path_factory.mktemp("class")
-    running = RunningClass(path, ["Ada", "Ben", "Eve"], arguments=("--trusted-proxy", "127.0.0.1"))
+    names = ["Ada", "Ben", "Eve", "Ida", "Tom", "Uma"]
+    running = RunningClass(path, names, arguments=("--trusted-proxy", "127.0.0.1"))
     yield running
     running.end()
 
@@ -52,18 +69,28 @@ def proxy(group: RunningClass, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 @pytest.fixture
 def page(browser) -> Iterator[Any]:
-    """A page that accepts the certificate of the proxy."""
-    yield from checked_page(browser, **TLS)
+    """A page that accepts the certificate of the proxy, and whose sounds are noted."""
+    for one in checked_page(browser, **TLS):
+        one.add_init_script(LISTEN)
+        yield one
 
 
 def lesson(page: Any) -> None:
-    """A program that is written, the 3D view, and a playground that is built."""
+    """A program that is written, heard, halted and stepped; the 3D view, and a playground that is built."""
     open_editor(page)
     page.locator(".cm-content").fill(PROGRAM)
     before = page.evaluate(PLACE)
     page.get_by_role("button", name="Run program").click()
     page.wait_for_function("() => window.thymio.state().robot.leds.top !== undefined")
     page.wait_for_function(f"(before) => ({PLACE})() !== before", arg=before)
+    page.wait_for_function(f"({SOUNDING})() === 1")
+    click_beside(page, HALTED)
+    playwright.expect(page.locator("#program-state")).to_have_text(f"halted in line {HALTED}")
+    page.focus(".cm-content")
+    step_into_event(page, ".current-line")
+    click_beside(page, HALTED)
+    page.keyboard.press("F9")
+    playwright.expect(page.locator("#program-state")).to_have_text("running")
     build_playground(page)
     page.locator("#view").press("n")
     page.locator(".item-form").wait_for()
@@ -98,9 +125,46 @@ def test_a_suite_behind_the_proxy_needs_its_token_and_has_a_lesson(browser, page
         suite.end()
 
 
+def test_a_simulator_that_dies_comes_back_on_the_open_page_and_others_do_not_notice(
+    group: RunningClass, proxy: Nginx, browser, page
+) -> None:
+    other = new_page(browser, **TLS)
+    states = (
+        "() => { const dot = document.getElementById('connection'); window.seen = [dot.dataset.state]; "
+        "new MutationObserver(() => window.seen.push(dot.dataset.state)).observe(dot, { attributes: true }); }"
+    )
+    for one, pupil in ((page, "ida"), (other, "tom")):
+        one.goto(f"{proxy.address}p/{pupil}/?tour=off&welcome=off#token={group.token_of(pupil)}")
+        one.locator("#connection[data-state=connected]").wait_for()
+        one.evaluate(states)
+    group.suite("ida").kill()
+    page.wait_for_function("() => window.seen.length > 1")
+    page.locator("#connection[data-state=connected]").wait_for()
+    page.locator("#pupil", has_text="Ida").wait_for()
+    before = page.evaluate("() => window.thymio.state().timeNs")
+    page.wait_for_function("(before) => window.thymio.state().timeNs !== before", arg=before)
+    assert set(other.evaluate("() => window.seen")) == {"connected"}
+    other.context.close()
+
+
+def test_two_devices_of_a_pupil_show_the_same_robot(group: RunningClass, proxy: Nginx, browser, page) -> None:
+    tablet = new_page(browser, **TLS)
+    for one in (page, tablet):
+        one.goto(f"{proxy.address}p/uma/?tour=off&welcome=off#token={group.token_of('uma')}")
+        one.locator("#connection[data-state=connected]").wait_for()
+    open_page(page, page.url)
+    open_editor(page)
+    page.locator(".cm-content").fill("call leds.top(0, 0, 32)\nmotor.left.target = 100")
+    page.get_by_role("button", name="Run program").click()
+    top = "() => JSON.stringify(window.thymio.state().robot?.leds?.top)"
+    page.wait_for_function(f"() => ({top})() !== undefined")
+    tablet.wait_for_function(f"(shown) => ({top})() === shown", arg=page.evaluate(top))
+    tablet.context.close()
+
+
 def test_the_links_of_the_teacher_have_the_address_of_the_proxy(group: RunningClass, proxy: Nginx, page) -> None:
     page.goto(f"{proxy.address}teacher/#token={group.known['teacher_token']}")
-    page.locator("#count", has_text="3 / 3").wait_for()
+    page.locator("#count", has_text="6 / 6").wait_for()
     page.click("[data-verb=sheet]")
     link = page.locator(".class-link a").first
     link.wait_for()
