@@ -278,8 +278,8 @@ def test_lights_are_animated_for_a_time(sim, act, kind):
 def test_places_of_sensors_have_no_prefix_where_robots_have_names(ros, simulation):
     sim = simulation(like="create3", noise=False, playground=WALL_AHEAD, robot_names=["bot"])
     hazards, intensities = (
-        ros.collect(HazardDetectionVector, "/bot/hazard_detection"),
-        ros.collect(IrIntensityVector, "/bot/ir_intensity"),
+        ros.collect(msg.HazardDetectionVector, "/bot/hazard_detection"),
+        ros.collect(msg.IrIntensityVector, "/bot/ir_intensity"),
     )
     sim.engine.post("bot", MoveRobot(0.26, 0.0, 0.0))
     sim.engine.post("bot", BodyTwist(0.1, 0.0))

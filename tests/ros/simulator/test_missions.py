@@ -59,6 +59,7 @@ def test_a_program_on_the_live_robot_gets_the_stars_of_the_command(ros, simulati
     found = latest(ros, "/simulator/_mission")
     assert (found["title"], found["robot"], found["languages"]) == ("One round by bus", "", list(mission.languages))
     tries = ros.collect(String, "/simulator/_mission/try")
+    ros.until(lambda: len(tries))
     sim.step(0.5)
     assert json.loads(tries[-1].data)["state"] == "waiting"
     assert set_parameters(ros, {"script.source": SOLUTION.read_text()}).successful
