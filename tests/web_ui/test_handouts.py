@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import io
 import sys
@@ -129,7 +130,11 @@ def marks(folder: Path, zipped: Path) -> dict[str, str]:
 
 def test_a_solution_a_playground_and_a_link_of_the_class(group: RunningClass, page, other_page, tmp_path) -> None:
     teacher, pupil = page, other_page
+    content = base64.b64encode(START.encode()).decode()
+    task = {"kind": "program", "name": "task.aesl", "content": content, "due": "", "pupils": None}
+    group.request("handout", task)
     teacher.goto(group.address)
+    teacher.locator("#count", has_text="2 / 2").wait_for()
     teacher.click("[data-verb=handouts]")
     teacher.locator("[data-verb=sendSolution]").first.click()
     (tmp_path / "solution.aesl").write_text("var solved = 1")
@@ -157,12 +162,12 @@ def test_a_solution_a_playground_and_a_link_of_the_class(group: RunningClass, pa
     assert pupil.url == f"http://127.0.0.1:{group.port}/p/ada/"
     pupil.wait_for_function("() => window.thymio.state().simulator?.title === 'Table'")
     open_menu(pupil, "#pupil")
-    assert pupil.locator("#pupil-sheet [data-handout]").count() == 3
-    pupil.get_by_text("Solution of").wait_for()
+    pupil.get_by_text("Solution of task.aesl").wait_for()
+    pupil.locator("#pupil-sheet [data-handout]", has_text="table.json").wait_for()
     teacher.click("[data-verb=close]")
     teacher.locator("[data-verb=takeBack]").first.click()
     teacher.click("[data-verb=yes]")
-    pupil.wait_for_function("() => document.querySelectorAll('#pupil-sheet [data-handout]').length === 2")
+    pupil.locator("#pupil-sheet [data-handout]", has_text="table.json").wait_for(state="detached")
 
 
 def test_stars_of_a_mission_that_was_handed_out_are_in_the_table(group: RunningClass, page, other_page) -> None:
