@@ -16,7 +16,21 @@ pytestmark = [
 ]
 
 FOLDER = pages.DOCS / "tutorials"
-TUTORIALS = ("drive", "first-node", "sensors", "service", "time", "domains", "qos", "tf", "record", "many-runs")
+TUTORIALS = (
+    "drive",
+    "first-node",
+    "sensors",
+    "service",
+    "action",
+    "time",
+    "domains",
+    "qos",
+    "tf",
+    "two-robots",
+    "package",
+    "record",
+    "many-runs",
+)
 LANDING = "first-node"
 """The tutorial that `make test` follows; the others wait in real time."""
 NEEDS = {"many-runs": ("distributed", "matplotlib", "pyarrow"), "record": ("matplotlib", "rosbags")}

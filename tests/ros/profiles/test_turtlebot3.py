@@ -48,7 +48,7 @@ def test_the_scan_has_360_beams_from_the_front(ros, sim):
 def test_frames_are_those_of_turtlebot3(ros, sim):
     static, moving = ros.collect(TFMessage, "/tf_static"), ros.collect(TFMessage, "/tf")
     odometry = ros.collect(Odometry, "/odom")
-    sim.until(lambda: moving and odometry)
+    sim.until(lambda: moving and odometry and static)
     pairs = {(one.header.frame_id, one.child_frame_id) for message in (*static, *moving) for one in message.transforms}
     assert {
         ("odom", "base_footprint"),
