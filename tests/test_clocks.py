@@ -16,6 +16,7 @@ import pytest
 TESTS = Path(__file__).parent
 OWNER = "patience.py"
 SLEEPS = {
+    "data/student_nodes/turn_server.py": "a program of a student, which waits as tutorials do",
     "network/test_live_tools.py": "a window that does not report whether it is ready",
     "testing/ros/test_cpu_limit.py": "real time in which no processor time is used",
 }

@@ -16,6 +16,7 @@ NEEDED = {
     "thymio_sim_ros.ros": "rclpy",
     "thymio_sim_ros.testing.ros": "rclpy",
     "thymio_sim_ros.tf": "rclpy",
+    "thymio_sim_ros.turtlesim": "turtlesim",
 }
 """Packages that not every installation has, by the modules that need them."""
 
