@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import tempfile
 import zipfile
 from pathlib import Path
 
@@ -81,6 +82,16 @@ def test_a_zip_that_is_too_large_or_leads_elsewhere_is_refused(
 ) -> None:
     with pytest.raises(MissionError, match=error):
         load_mission(packed(tmp_path, files, **members))
+
+
+def test_a_zip_of_a_client_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    elsewhere, folder = tmp_path / "elsewhere", tmp_path / "folder"
+    for made in (elsewhere, folder):
+        made.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(elsewhere))
+    mission = load_mission(packed(tmp_path, FILES), folder=folder)
+    assert Path(mission.playground).is_relative_to(folder)
+    assert list(elsewhere.iterdir()) == []
 
 
 def test_a_zip_that_was_cut_or_has_no_mission_is_refused(tmp_path: Path) -> None:

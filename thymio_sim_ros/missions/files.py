@@ -61,8 +61,8 @@ def located(path: Path) -> Path:
     return unpack(path.read_bytes()) if is_archive(head) else path
 
 
-def unpack(data: bytes) -> Path:
-    """Unpack a zip into a folder that is removed when the process ends; return the path of its mission.
+def unpack(data: bytes, folder: Path | None = None) -> Path:
+    """Unpack a zip into a folder, or into one that is removed when the process ends; return the path of its mission.
 
     The mission is the file `mission.json`, or the only JSON file with "success" in it. Raises FieldError.
     """
@@ -74,8 +74,9 @@ def unpack(data: bytes) -> Path:
     except (zipfile.BadZipFile, zipfile.LargeZipFile, OSError, RuntimeError, EOFError, NotImplementedError) as error:
         raise FieldError("", "a damaged zip", "a complete zip with mission.json") from error
     mission = _mission_of(contents)
-    folder = Path(tempfile.mkdtemp(prefix="thymio_mission_"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    if folder is None:
+        folder = Path(tempfile.mkdtemp(prefix="thymio_mission_"))
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
     for name, content in contents.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -58,17 +58,17 @@ class MissionError(ThymioSimError):
         self.expected = error.expected
 
 
-def load_mission(path: Path, *, is_closed: bool = False) -> Mission:
+def load_mission(path: Path, *, folder: Path | None = None) -> Mission:
     """Read a mission file, or a zip with one and all that it needs; paths in it start in its folder.
 
-    With `is_closed`, it may name no files outside of its folder, as that of a client. A zip is unpacked into a folder
-    that is there until the process ends. Raises MissionError, OSError.
+    A zip is unpacked into a folder that is there until the process ends. With `folder`, for the file of a client, it is
+    unpacked there, and a mission may name no files outside of its own folder. Raises MissionError, OSError.
     """
     data = path.read_bytes()
     try:
-        files = Files(path.parent, is_closed=is_closed)
+        files = Files(path.parent, is_closed=folder is not None)
         if is_archive(data):
-            inside = unpack(data)
+            inside = unpack(data, folder)
             data, files = inside.read_bytes(), Files(inside.parent, is_closed=True)
         if len(data) > MAX_BYTES:
             raise FieldError("", f"{len(data)} bytes", f"at most {MAX_BYTES}")

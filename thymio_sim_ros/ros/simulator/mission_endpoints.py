@@ -178,10 +178,11 @@ def _open(name: str, value: str) -> _Opened:
         path = find_mission(name)
         mission = load_mission(path)
         return _opened(path, mission, load_playground(mission.playground)[1])
-    with tempfile.TemporaryDirectory(prefix="mission-") as folder:
-        path = _unpacked(name, value, Path(folder))
+    with tempfile.TemporaryDirectory(prefix="mission-") as temporary:
+        folder = Path(temporary)
+        path = _unpacked(name, value, folder)
         try:
-            mission = load_mission(path, is_closed=True)
+            mission = load_mission(path, folder=folder)
         except MissionError as error:
             raise MissionError(path.name, FieldError(error.key, error.found, error.expected)) from error
         _, playground = load_playground(mission.playground)
