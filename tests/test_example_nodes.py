@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from tests import pages
+from tests import pages, ros_graph
 from tests.patience import PATIENCE_S
 from tests.processes import wait_until_asleep
 from thymio_sim_ros import examples
@@ -21,8 +21,9 @@ from thymio_sim_ros import examples
 pytest.importorskip("rclpy")
 
 PAGES = [Path("../README.md"), *(path.relative_to(pages.DOCS) for path in sorted(pages.DOCS.rglob("*.md")))]
+CREATE3 = ros_graph.needs_package("irobot_create_msgs")
 NODES = [
-    pytest.param(block.text, id=f"{page}:{block.line}")
+    pytest.param(block.text, id=f"{page}:{block.line}", marks=CREATE3 if "irobot_create_msgs" in block.text else ())
     for page in PAGES
     for block in pages.all_blocks(pages.read(page))
     if "rclpy.spin(" in block.text and block.language == "python"

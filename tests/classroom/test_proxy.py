@@ -220,7 +220,7 @@ def test_no_path_leads_to_another_robot_or_file(group: RunningClass, proxy: Ngin
 
 def test_a_body_that_is_too_large_is_refused(group: RunningClass, proxy: Nginx, tmp_path: Path) -> None:
     large = tmp_path / "large"
-    large.write_bytes(bytes(900_000))  # nginx itself refuses a megabyte
+    large.write_bytes(bytes(7_000_000))  # nginx itself refuses more than 8 MB
     given = bearer(group.known["teacher_token"])
     assert curl(proxy, "teacher/class/message", *given, "--data-binary", f"@{large}")[0] == 413
 

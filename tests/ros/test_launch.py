@@ -126,7 +126,11 @@ def _declared(module: str) -> dict[str, type]:
     """Parameter name → type of its default, of every parameter dataclass that a module defines."""
     namespace = vars(importlib.import_module(f"thymio_sim_ros.ros.{module}")).values()
     classes = [item for item in namespace if isinstance(item, type) and dataclasses.is_dataclass(item)]
+    fields = [field for item in classes for field in dataclasses.fields(item)]
+    groups = [field for field in fields if field.metadata and dataclasses.is_dataclass(field.default)]
     return {
+        f"{group.name}.{one.name}": type(one.default) for group in groups for one in params.declared(group.default)
+    } | {
         field.metadata["options"].name or field.name: list
         if field.default is dataclasses.MISSING
         else type(field.default)

@@ -9,7 +9,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.creator_support import choose_more, click, open_creator
-from tests.web_ui.page_support import MARKS, build_playground
+from tests.web_ui.page_support import MARKS, go_on_building
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros.missions import load_mission
 
@@ -70,8 +70,8 @@ def test_a_mission_is_made_saved_and_opened_again(at_rest, page, tmp_path):
     page.click("#creator-try")
     page.wait_for_function("window.thymio.state().mission?.title === 'My playground'")
     playwright.expect(page.locator(".mission-form")).to_have_count(0)
-    page.wait_for_function("document.body.innerText.includes('Drive to the square.')")
-    build_playground(page)
+    page.get_by_text("Drive to the square.").first.wait_for(state="attached")
+    go_on_building(page, "My playground")
     page.click(".mission-form summary")
     page.click("[data-verb=no-mission]")
     page.wait_for_function("window.thymio.built().playground.mission === undefined")

@@ -88,7 +88,7 @@ def test_from_the_address_to_the_third_star_and_back(suite, own_page):
 
     page.locator("#missions-open").click()  # the list knows the stars, also after the page was loaded again
     first = page.locator(f"[data-mission={played[0].name}] .mission-star:not(.mission-no)")
-    assert first.count() == 1 + len(played[0].mission.stars)
+    playwright.expect(first).to_have_count(1 + len(played[0].mission.stars))
     page.keyboard.press("Escape")
     open_page(page, address)
     page.locator("#missions-open").click()

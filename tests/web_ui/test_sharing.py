@@ -43,6 +43,7 @@ def test_a_program_in_a_link_is_opened_beside_the_own_one(at_rest, page, other_p
     open_editor(page)
     page.locator(".cm-content").fill("onevent prox\nmotor.left.target = 42")
     choose_in_file_menu(page, "share")
+    page.locator("dialog.sharing").wait_for()
     page.keyboard.press("Escape")
     page.click("#file-menu")
     page.locator(".file-name").fill(f"{NAME}.aesl")

@@ -38,6 +38,7 @@ export function missionForm({ setting, model, openProgram }) {
   const body = h("div", { class: "mission-body" });
   const summary = h("summary", {}, icon("flag", { small: true }), h("span", { class: "grow" }, t("mission")), caret);
   const element = h("details", { class: "mission-form disc" }, summary, body);
+  body.addEventListener("pointerup", () => model.changed());
   /** @type {Playground | null} */ let shown = null;
 
   /** @param {Partial<Mission> | null} values */
@@ -195,7 +196,8 @@ export function missionForm({ setting, model, openProgram }) {
     render() {
       const { playground, placing, item } = model;
       element.hidden = placing !== null || item !== null;
-      if (element.hidden || playground === shown) return;
+      // What is being pressed must still be there when it is released: a text that was changed before loses the focus now.
+      if (element.hidden || playground === shown || body.matches(":active")) return;
       shown = playground;
       renew(body, build(playground));
     },
