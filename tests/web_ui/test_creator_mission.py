@@ -9,21 +9,39 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.creator_support import choose_more, click, open_creator
-from tests.web_ui.page_support import MARKS, go_on_building
+from tests.web_ui.page_support import MARKS, go_on_building, wait_for_frame
 from tests.web_ui.test_page_access import AXE, FINDINGS
 from thymio_sim_ros.missions import load_mission
 
 pytestmark = MARKS
 
 
-def choose(page, goal, field, value):
-    """Choose a value of a goal, and wait until the mission has it."""
-    page.locator(f'[data-goal="{goal}"] [data-field={field}]').select_option(value)
-
-
 def wait_for_mission(page, expression):
     """Wait until an expression over the mission is true."""
     page.wait_for_function(f"((mission) => {expression})(window.thymio.built().playground.mission)")
+
+
+def choose(page, selector, value, expected):
+    """Choose a value, and wait until the mission has it and the form is built anew."""
+    page.locator(selector).select_option(value)
+    wait_for_mission(page, expected)
+    wait_for_frame(page)
+
+
+def press(page, selector, expected):
+    """The same for a button or a checkbox."""
+    page.click(selector)
+    wait_for_mission(page, expected)
+    wait_for_frame(page)
+
+
+def write(page, selector, text, expected):
+    """The same for a text or a number."""
+    field = page.locator(selector)
+    field.fill(text)
+    field.blur()
+    wait_for_mission(page, expected)
+    wait_for_frame(page)
 
 
 def make(page):
@@ -33,17 +51,17 @@ def make(page):
     page.keyboard.press("Escape")
     page.keyboard.press("Escape")
     page.click(".mission-form summary")
-    page.click("[data-verb=make-mission]")
-    page.click("[data-verb=add-goals]")
-    page.click("[data-verb=add-goals]")
-    choose(page, "goals[1]", "kind", "lights")
-    choose(page, "goals[1]", "color", "green")
-    page.select_option("[data-field=order]", "then")
-    page.click("[data-verb=add-never]")
-    page.fill("[data-field=within_s]", "20")
-    page.fill("#mission-story", "Drive to the square.")
+    press(page, "[data-verb=make-mission]", "mission !== undefined")
+    press(page, "[data-verb=add-goals]", "mission.goals.length === 1")
+    press(page, "[data-verb=add-goals]", "mission.goals.length === 2")
+    choose(page, '[data-goal="goals[1]"] [data-field=kind]', "lights", "mission.goals[1].kind === 'lights'")
+    choose(page, '[data-goal="goals[1]"] [data-field=color]', "green", "mission.goals[1].values.color === 'green'")
+    choose(page, "[data-field=order]", "then", "mission.order === 'then'")
+    press(page, "[data-verb=add-never]", "mission.never.length === 1")
+    write(page, "[data-field=within_s]", "20", "mission.within_s === 20")
+    write(page, "#mission-story", "Drive to the square.", "mission.story.endsWith('square.')")
     page.fill("#mission-hints", "Turn left.\nThen stop.")
-    page.click("[data-language=vpl]")
+    page.click("[data-language=vpl]")  # the text is finished by this press, which counts
     wait_for_mission(page, "mission.hints.length === 2 && !mission.languages.includes('vpl')")
 
 

@@ -39,6 +39,14 @@ export function missionForm({ setting, model, openProgram }) {
   const summary = h("summary", {}, icon("flag", { small: true }), h("span", { class: "grow" }, t("mission")), caret);
   const element = h("details", { class: "mission-form disc" }, summary, body);
   body.addEventListener("pointerup", () => model.changed());
+  let isTyping = false;
+  body.addEventListener("input", () => (isTyping = true));
+  for (const end of ["change", "focusout"]) {
+    body.addEventListener(end, () => {
+      isTyping = false;
+      model.changed();
+    });
+  }
   /** @type {Playground | null} */ let shown = null;
 
   /** @param {Partial<Mission> | null} values */
@@ -196,8 +204,8 @@ export function missionForm({ setting, model, openProgram }) {
     render() {
       const { playground, placing, item } = model;
       element.hidden = placing !== null || item !== null;
-      // What is being pressed must still be there when it is released: a text that was changed before loses the focus now.
-      if (element.hidden || playground === shown || body.matches(":active")) return;
+      // What is being pressed must still be there when it is released, and a text until it is finished.
+      if (element.hidden || playground === shown || isTyping || body.matches(":active")) return;
       shown = playground;
       renew(body, build(playground));
     },
