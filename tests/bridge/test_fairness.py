@@ -222,3 +222,25 @@ def test_new_clients_receive_the_current_channels() -> None:
                 assert [channel.id for channel in (await greeting(client)).channels] == [10, 20, 22]
 
     run(scenario())
+
+
+def test_answers_to_a_client_that_asks_for_much_delay_neither_messages_nor_answers_to_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Answers with all parameters, each some milliseconds of work, occupied the loop for up to fifteen seconds."""
+    monkeypatch.setattr("thymio_sim_ros.bridge.server._SLICE_S", 0.0)
+
+    async def scenario() -> None:
+        async with bridge() as server, server.client() as busy, server.client() as other:
+            await other.subscribe(1)
+            await busy.settle()
+            for number in range(500):
+                server.server.execute(ev.SendParameters(1, None, f"busy{number}"))
+            server.server.execute(ev.SendParameters(2, None, "other"))
+            server.publish(b"data")
+            assert (await other.next(ms.MessageData)).payload == b"data"
+            assert (await other.next(ms.ParameterValues)).id == "other"
+            assert server.server._answers
+            assert [(await busy.next(ms.ParameterValues)).id for _ in range(500)] == [f"busy{n}" for n in range(500)]
+
+    run(scenario())

@@ -7,7 +7,7 @@
     server                         clients around the switchboard, without sockets; settings has their limits
     websocket                      one client on a WebSocket of aiohttp; client_send_queue: messages for it
     handshake                      sub-protocols; `access` decides who may connect
-    connections, throttle          limits of connections, and of the time of busy clients
+    connections, throttle          limits of connections, and of the time of busy clients; fair_queue: who is next
     listening                      listening sockets of all servers
 
 docs/spec/foxglove.md section 1 explains why this is not one of the vendor's packages.

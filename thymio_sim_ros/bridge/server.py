@@ -12,12 +12,14 @@ import contextlib
 import itertools
 import logging
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 
 from thymio_sim_ros.access import AccessCheck, AccessRules, Role
 from thymio_sim_ros.access.origins import FOXGLOVE_APPS
 from thymio_sim_ros.bridge.client_send_queue import ClientSendQueue, Message
+from thymio_sim_ros.bridge.fair_queue import FairQueue
 from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.protocol.errors import FrameError
 from thymio_sim_ros.bridge.protocol.messages import (
@@ -34,12 +36,15 @@ from thymio_sim_ros.bridge.report_limiter import ReportLimiter
 from thymio_sim_ros.bridge.rosbridge import frames
 from thymio_sim_ros.bridge.settings import EventSink, ServerSettings
 from thymio_sim_ros.bridge.switchboard.events import (
+    AnswerCall,
     Command,
     Data,
     Event,
     RosbridgeJoined,
     RosbridgeLeft,
     RosbridgeReceived,
+    SendParameters,
+    SendToClient,
 )
 from thymio_sim_ros.bridge.switchboard.outcome import Delivery
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
@@ -50,8 +55,10 @@ __all__ = ["BridgeServer"]
 _Work = tuple[int, int, bytes] | Command | Callable[[], None]
 """A message of a channel with its time, a command, or a function to call."""
 
+_Answer = AnswerCall | SendParameters | SendToClient
+
 _SLICE_S = 0.002
-"""Processor time of the event loop that one client may use before other clients are served, s."""
+"""Processor time of the event loop that one client, or answers, may use before other clients are served, s."""
 _MAX_PENDING = 1000
 """Messages and commands that wait for the event loop; the thread of a further one waits until they are processed."""
 _MAX_IDLE = 100
@@ -90,6 +97,8 @@ class BridgeServer:
         self._client_ids = itertools.count(1)
         self._pending: deque[_Work] = deque()
         """What has been posted and not been processed yet."""
+        self._answers: FairQueue[int, _Answer] = FairQueue()
+        """Answers by client: those to one that asks for much delay nothing else."""
         self._is_woken = False
         """Whether the loop is going to process `_pending`."""
         self._has_room = threading.Event()
@@ -165,13 +174,37 @@ class BridgeServer:
                     self._send_data(*work)
                 elif callable(work):
                     work()
+                elif isinstance(work, _Answer):
+                    self._put_answer(work)
                 else:
                     self._deliver(self._board.apply(work))
             except Exception:
                 # An internal error must not end the loop; deliveries not made yet are lost.
-                self._log.exception("internal error (please report): %s failed", type(work).__name__)
+                self._log_failure(work)
         self._flush()
         self._has_room.set()
+
+    def _put_answer(self, answer: _Answer) -> None:
+        if not self._answers:
+            self._loop.call_soon(self._send_answers)
+        self._answers.put(answer.client, answer)
+
+    def _send_answers(self) -> None:
+        """Send answers for `_SLICE_S`, and others in the next iterations of the event loop."""
+        end_s = time.thread_time() + _SLICE_S
+        while self._answers:
+            answer = self._answers.pop()
+            try:
+                self._deliver(self._board.apply(answer))
+            except Exception:
+                self._log_failure(answer)
+            if time.thread_time() >= end_s and self._answers:
+                self._loop.call_soon(self._send_answers)
+                break
+        self._flush()
+
+    def _log_failure(self, work: _Work) -> None:
+        self._log.exception("internal error (please report): %s failed", type(work).__name__)
 
     def _flush(self) -> None:
         """Send what has been queued for all clients."""

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thymio_sim_ros.bridge import FrameError
+from thymio_sim_ros.bridge.protocol import json_codec, wire
 from thymio_sim_ros.bridge.protocol import messages as ms
-from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import MAX_ID, StatusLevel
 from thymio_sim_ros.bridge.protocol.messages import CLIENT_JSON, SERVER_JSON
 
@@ -216,3 +216,8 @@ def test_text_that_utf8_cannot_encode_is_escaped() -> None:
 
 def test_the_hot_path_gives_the_frame_of_the_value() -> None:
     assert wire.data_head(7, 9) + b"p" == wire.encode_server(ms.MessageData(7, 9, b"p"))
+
+
+def test_the_annotations_of_a_message_are_read_once() -> None:
+    """They were read again for each message: ten times the work, while a client asked for all parameters."""
+    assert json_codec.writer(ms.ParameterValues) is json_codec.writer(ms.ParameterValues)

@@ -74,6 +74,7 @@ def _reader(shape: Any) -> Reader:
     return _record_reader(shape)
 
 
+@functools.cache
 def _writer(shape: Any) -> Writer:
     if get_origin(shape) is tuple and dataclasses.is_dataclass(get_args(shape)[0]):
         write_item = writer(get_args(shape)[0])

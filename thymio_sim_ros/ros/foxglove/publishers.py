@@ -15,6 +15,7 @@ from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
+from thymio_sim_ros.bridge.fair_queue import FairQueue
 from thymio_sim_ros.bridge.protocol.constants import JSON, StatusLevel
 from thymio_sim_ros.bridge.protocol.messages import ClientChannel, Status
 from thymio_sim_ros.bridge.switchboard.events import Command, SendToClient
@@ -25,7 +26,6 @@ from thymio_sim_ros.ros.foxglove.cdr_complexity import TooManyPartsError, check_
 from thymio_sim_ros.ros.foxglove.held_publisher import HeldPublisher
 from thymio_sim_ros.ros.foxglove.qos import publisher_qos
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
-from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message

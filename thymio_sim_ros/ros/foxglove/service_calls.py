@@ -21,7 +21,7 @@ from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.task import Future
 
-from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
+from thymio_sim_ros.bridge.fair_queue import FairQueue
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.messages.message_class import Message, Service

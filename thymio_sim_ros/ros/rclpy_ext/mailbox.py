@@ -15,7 +15,7 @@ from typing import Generic, TypeVar
 
 from rclpy.node import Node
 
-from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
+from thymio_sim_ros.bridge.fair_queue import FairQueue
 
 T = TypeVar("T")
 

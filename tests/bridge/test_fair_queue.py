@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thymio_sim_ros.ros.rclpy_ext.fair_queue import FairQueue
+from thymio_sim_ros.bridge.fair_queue import FairQueue
 
 
 def filled(*values):
