@@ -109,6 +109,7 @@ def test_every_level_gives_the_same_marks(tmp_path: Path, name: str) -> None:
     }
 
 
+@pytest.mark.slow
 def test_a_class_of_nodes_gets_its_points(tmp_path: Path, level: str) -> None:
     assert points(graded_class(tmp_path, level)) == EXPECTED
 

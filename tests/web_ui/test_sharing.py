@@ -49,7 +49,7 @@ def test_a_program_in_a_link_is_opened_beside_the_own_one(at_rest, page, other_p
     page.locator(".file-name").fill(f"{NAME}.aesl")
     page.locator(".file-name").press("Enter")
     link = shared_link(page)
-    assert "42" not in link
+    assert "target" not in link
     assert len(link) < 700
     page.get_by_text("holds the program itself").wait_for()
     page.get_by_text("This address works on this computer only.").wait_for()
