@@ -75,7 +75,9 @@ class MissionEndpoints:
         """What the last message about the try was made of."""
         self._published_ns = 0
         """Wall time of that message."""
-        runner.observer = self
+        runner.before_tick.append(self._begin_tick)
+        runner.on_tick.append(self._judge_tick)
+        runner.on_engine.append(self._judge_other_engine)
         self._publish_mission(None)
         self._publish_try()
 
@@ -115,18 +117,18 @@ class MissionEndpoints:
         self._publish_mission(None)
         self._publish_try()
 
-    def before_tick(self) -> None:
+    def _begin_tick(self) -> None:
         """Begin a try if one is due."""
         if self.live is not None:
             self.live.before_tick()
 
-    def after_tick(self) -> None:
+    def _judge_tick(self) -> None:
         """Judge the tick, and publish what has changed."""
         if self.live is not None:
             self.live.after_tick()
             self._publish_if_changed()
 
-    def engine_replaced(self) -> None:
+    def _judge_other_engine(self) -> None:
         """Judge in the new world if it is that of the mission, as with another seed; else the mission has ended."""
         live, engine = self.live, self._runner.engine
         if live is None:

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import wait as wait_for
 from dataclasses import replace
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 from rclpy.executors import Executor
 from rclpy.node import Node
@@ -37,7 +37,7 @@ from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.playground.reader import RobotStart
 from thymio_sim_ros.sim.world import World
 
-__all__ = ["TickObserver", "WorldRunner"]
+__all__ = ["WorldRunner"]
 
 T = TypeVar("T")
 
@@ -46,19 +46,6 @@ SLICE_NS = 50_000_000
 
 MAX_NOTES = 20
 """Number of notes, and of faults of other nodes, in the state; the log has all of them."""
-
-
-class TickObserver(Protocol):
-    """Follows the ticks of a live engine."""
-
-    def before_tick(self) -> None:
-        """The next tick is about to begin; a reset is possible."""
-
-    def after_tick(self) -> None:
-        """A tick has been executed."""
-
-    def engine_replaced(self) -> None:
-        """The runner has another engine."""
 
 
 class WorldRunner:
@@ -98,16 +85,18 @@ class WorldRunner:
         """Whether the node is about to stop: `run_beside` waits no longer."""
         self._published_fallen: frozenset[str] = frozenset()
         self._shown_paint: Color | None = None
+        self.before_tick: list[Callable[[], None]] = []
+        """Called before each tick, when a reset is possible."""
         self.on_tick: list[Callable[[], None]] = []
         """Called after each tick, when its readings are published."""
+        self.on_engine: list[Callable[[], None]] = []
+        """Called when there is another engine, which has started."""
         self.on_start: list[Callable[[], None]] = []
         """Called when another world starts, or this one anew."""
         self.on_robots: Callable[[bool], None] = lambda is_new: None
         """Called when robots have come or gone, or for another engine (True)."""
         self.on_reset: Callable[[], None] = lambda: None
         """Called after a reset."""
-        self.observer: TickObserver | None = None
-        """Is called around each tick: a mission."""
 
     @property
     def is_replaying(self) -> bool:
@@ -132,8 +121,8 @@ class WorldRunner:
         self.prepared, self.engine = prepared, engine
         self.start()
         self.on_robots(True)
-        if self.observer is not None:
-            self.observer.engine_replaced()
+        for act in self.on_engine:
+            act()
         # Parts of the world before refer to each other; the collector, which does not count their megabytes, is late.
         gc.collect()
 
@@ -284,14 +273,12 @@ class WorldRunner:
                 self._logged.repeat_inputs(self.engine)
                 self.update_robots()  # those of the log come and go between these ticks
                 self._show_paint()
-            if self.observer is not None:
-                self.observer.before_tick()
+            for act in self.before_tick:
+                act()
             result = self.engine.step(endpoints.demand.sensors)
             endpoints.publish_readings(self.world, result)
             for act in self.on_tick:
                 act()
-            if self.observer is not None:
-                self.observer.after_tick()
             if self.paused:
                 endpoints.clock.publish(result.now_ns, last=True)
         if not self.paused:
