@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 import traceback
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import assert_never
 from urllib.parse import quote
@@ -34,14 +34,8 @@ from thymio_sim_ros.names.addresses import describe_access, describe_urls, urls
 from thymio_sim_ros.network.settings import OFF
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.foxglove.assets import AssetError, load_asset
-from thymio_sim_ros.ros.foxglove.graph import (
-    allow_list,
-    connection_graph,
-    is_parameter_service,
-    services_with_servers,
-    visible,
-    visible_topics,
-)
+from thymio_sim_ros.ros.foxglove.discovery import SHARE, Discovery, Filters
+from thymio_sim_ros.ros.foxglove.graph import allow_list
 from thymio_sim_ros.ros.foxglove.options import FoxgloveParams, check, server_capabilities
 from thymio_sim_ros.ros.foxglove.parameters import Parameters
 from thymio_sim_ros.ros.foxglove.publishers import ClientPublishers
@@ -49,7 +43,6 @@ from thymio_sim_ros.ros.foxglove.rosbridge.host import Host
 from thymio_sim_ros.ros.foxglove.rosbridge.sessions import Sessions
 from thymio_sim_ros.ros.foxglove.service_calls import ServiceCalls
 from thymio_sim_ros.ros.foxglove.services import Services
-from thymio_sim_ros.ros.foxglove.time_share import TimeShare
 from thymio_sim_ros.ros.foxglove.topics import Topics
 from thymio_sim_ros.ros.interface.qos import TRANSIENT_LOCAL
 from thymio_sim_ros.ros.rclpy_ext import parameters
@@ -65,9 +58,6 @@ from thymio_sim_ros.web import ServerThread
 __all__ = ["FoxgloveBridge", "main"]
 
 _DISCOVERY_PERIOD_S = 0.25
-_DISCOVERY_SHARE = 0.02
-"""Largest share of the thread's time for queries of the graph, which take 12 ms with twenty robots. The same share
-applies to queries of the publishers of subscribed topics, and to the connection graph."""
 _REFRESH_PERIOD_S = 1.0
 _RESEND_DELAY_S = 1.0
 """Delay after a new session until retained messages are sent again: a client that is dropping the data of the last
@@ -139,8 +129,6 @@ class FoxgloveBridge:
             raise
         self._is_stopped = False
         self._sim_now_ns = 0
-        self._wants_graph = False
-        self._is_graph_outdated = True
         self._build()
 
     @property
@@ -231,8 +219,10 @@ class FoxgloveBridge:
     def _build(self) -> None:
         values, post = self.params, self._server.execute
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._is_topic = allow_list(values.topic_whitelist)
-        self._is_service = allow_list(values.service_whitelist)
+        filters = Filters(
+            allow_list(values.topic_whitelist), allow_list(values.service_whitelist), values.include_hidden
+        )
+        self._discovery = Discovery(self.node, filters, lambda graph: post(ev.SetGraph(graph)))
         self._fast_poll_timer = self.node.create_timer(_FAST_POLL_PERIOD_S, self._poll_waiting, clock=steady)
         self._fast_poll_timer.cancel()
         self._resend_timer = self.node.create_timer(_RESEND_DELAY_S, self._resend_retained, clock=steady)
@@ -271,9 +261,9 @@ class FoxgloveBridge:
                 offered=server_capabilities(values, uses_sim_time=self._uses_sim_time),
                 max_size=values.max_message_size,
                 depths=(values.min_qos_depth, values.max_qos_depth),
-                is_topic=self._is_topic,
+                is_topic=filters.is_topic,
                 is_client_topic=allow_list(values.client_topic_whitelist),
-                is_service=self._is_service,
+                is_service=filters.is_service,
                 is_read_only_service=allow_list(values.read_only_services),
             )
         )
@@ -283,10 +273,7 @@ class FoxgloveBridge:
             if values.publish_client_count
             else None
         )
-        self._seen: tuple[Mapping[str, Sequence[str]], Mapping[str, Sequence[str]]] = ({}, {})
-        self._discovery, self._graph_share = TimeShare(_DISCOVERY_SHARE), TimeShare(_DISCOVERY_SHARE)
         self._next_check_s = 0.0
-        self._shown: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
         self._jump_handle = self.node.get_clock().create_jump_callback(
             JumpThreshold(
                 min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1), on_clock_change=True
@@ -319,30 +306,16 @@ class FoxgloveBridge:
         self._mailbox.drain()
         self._check_publishers()
         self._rosbridge.refresh()
-        if self._wants_graph and self._is_graph_outdated:
-            self._send_graph()
-        if not self._discovery.is_due:
-            return
-        with self._discovery.work():
-            topics = dict(self.node.get_topic_names_and_types())
-            services = services_with_servers(self.node)
-        self._calls.forget_gone(services)
-        if (topics, services) == self._seen:
-            return
-        self._seen = (topics, services)
-        hidden = self.params.include_hidden
-        shown = visible_topics(topics, self._is_topic, hidden=hidden)
-        offered = visible(services, self._is_service, hidden=hidden)
-        if not hidden:
-            offered = {name: types for name, types in offered.items() if not is_parameter_service(name)}
-        self._shown = (tuple(shown), tuple(offered))
-        self._topics.update(shown)
-        self._services.update(offered)
-        self._parameters.update(services)
+        found = self._discovery.poll()
+        self._calls.forget_gone(self._discovery.services)
+        if found is not None:
+            self._topics.update(found.topics)
+            self._services.update(found.services)
+            self._parameters.update(self._discovery.services)
 
     def _check_publishers(self) -> None:
         """Continue the check of all subscribed topics; start a new one every `_REFRESH_PERIOD_S`."""
-        if time.monotonic() >= self._next_check_s and self._topics.refresh(_DISCOVERY_PERIOD_S * _DISCOVERY_SHARE):
+        if time.monotonic() >= self._next_check_s and self._topics.refresh(_DISCOVERY_PERIOD_S * SHARE):
             self._next_check_s = time.monotonic() + _REFRESH_PERIOD_S
 
     def _refresh(self) -> None:
@@ -350,14 +323,7 @@ class FoxgloveBridge:
         if self._count is not None and self._published_count != self._server.client_count:
             self._published_count = self._server.client_count
             self._count.publish(UInt32(data=self._published_count))
-        self._is_graph_outdated = True
-
-    def _send_graph(self) -> None:
-        """Send the connection graph, unless it has used up its share of time."""
-        if self._graph_share.is_due:
-            self._is_graph_outdated = False
-            with self._graph_share.work():
-                self._server.execute(ev.SetGraph(connection_graph(self.node, *self._shown)))
+        self._discovery.mark_outdated()
 
     def _poll_soon(self) -> None:
         """Start polling. A timer that is reset repeatedly would never fire; therefore a running one is left alone."""
@@ -404,19 +370,13 @@ class FoxgloveBridge:
             case ev.ParametersWatched():
                 self._parameters.watch(event)
             case ev.GraphSubscriptionChanged():
-                self._on_graph_subscription(event)
+                self._discovery.want_connections(wanted=event.wanted)
             case ev.AssetRequested():
                 self._on_asset_requested(event)
             case ev.RosbridgeJoined() | ev.RosbridgeReceived() | ev.RosbridgeLeft():
                 self._rosbridge.handle(event)
             case _:
                 assert_never(event)
-
-    def _on_graph_subscription(self, event: ev.GraphSubscriptionChanged) -> None:
-        self._wants_graph = event.wanted
-        self._is_graph_outdated = True
-        if event.wanted:
-            self._send_graph()
 
     def _on_asset_requested(self, event: ev.AssetRequested) -> None:
         try:
