@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { canStart, isFirstVisit } from "../../web_ui/hosts/welcome_host.js";
+import { canStart, hasRoomForOffer, isFirstVisit } from "../../web_ui/hosts/welcome_host.js";
 import { INITIAL } from "../../web_ui/state/index.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 import { offeredExamples } from "../../web_ui/welcome/offered_examples.js";
@@ -31,6 +31,14 @@ test("they need a robot, a connection that may write, and the running world in t
   assert.equal(canStart({ ...state, identified: false }, false), false); // whether it may write is not known yet
   assert.equal(canStart({ ...state, readOnly: true }, false), false);
   assert.equal(canStart({ ...state, robots: {} }, false), false);
+});
+
+test("the tour is offered beside the running world only, not over a workspace or the goal of a mission", () => {
+  const state = { ...INITIAL, connection: /** @type {const} */ ("connected"), identified: true };
+  assert.equal(hasRoomForOffer(state, false), true);
+  assert.equal(hasRoomForOffer(state, true), false);
+  assert.equal(hasRoomForOffer({ ...state, connection: "lost" }, false), false);
+  assert.equal(hasRoomForOffer({ ...state, mission: /** @type {any} */ ({ name: "forward" }) }, false), false);
 });
 
 test("examples that move by themselves come first; the menu and what only waits are none", () => {

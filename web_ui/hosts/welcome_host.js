@@ -36,6 +36,16 @@ export function canStart({ connection, identified, readOnly, robots }, isBuildin
   return connection === "connected" && identified && !readOnly && Object.keys(robots).length > 0 && !isBuilding;
 }
 
+/**
+ * Whether the offer of the tour has room: it would lie over an open workspace, and over the goal of a mission.
+ *
+ * @param {Pick<State, "connection" | "identified" | "mission">} state
+ * @param {boolean} isWorking   whether a workspace is open
+ */
+export function hasRoomForOffer({ connection, identified, mission }, isWorking) {
+  return connection === "connected" && identified && mission === null && !isWorking;
+}
+
 export class WelcomeHost {
   /** @param {HTMLElement} slot */
   constructor(slot) {
@@ -97,9 +107,7 @@ export class WelcomeHost {
     if (context === null) return;
     // The tour shows what the starts would hide.
     const showsStarts = this.isWanted && !context.tour.isOpen && canStart(state, context.creator.isOpen);
-    // It would lie over an open workspace.
-    const hasRoom = context.workspace.tab === null;
-    const showsOffer = hasRoom && context.tour.isOffered && state.connection === "connected" && state.identified;
+    const showsOffer = context.tour.isOffered && hasRoomForOffer(state, context.workspace.tab !== null);
     if ((showsStarts || showsOffer) && this.module === null) {
       if (!this.isAsked) void this.#load(true).then(() => context.scene.invalidate());
       return;
