@@ -11,7 +11,7 @@ export const REPORTS = ["pair_run", "PairExecuted"];
 
 /**
  * A file with blocks for each statement of the text of a program of VPL, or the first line that no block stands for. The
- * blocks do not report which row has run: it tells only VPL something.
+ * blocks do not report which row has run: only VPL shows that.
  *
  * @param {string} code
  * @returns {{ text: string, unknown: null } | { text: null, unknown: Unknown }}

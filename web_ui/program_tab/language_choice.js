@@ -13,7 +13,7 @@
  * @property {string} after      the file as it was left
  */
 /**
- * What to tell about the language of the document:
+ * What to say about the language of the document:
  *
  * - `made`: the text is made from a picture, and cannot be edited
  * - `detached`: the picture has left the file, which can be undone

@@ -16,7 +16,7 @@ const LISTENS = [
   ["pen/down", "std_msgs/msg/Bool"],
 ];
 /** Folders and topics that a robot publishes and that a first node needs. */
-const TELLS = ["buttons", "ground", "imu", "odom", "proximity"];
+const PUBLISHES = ["buttons", "ground", "imu", "odom", "proximity"];
 
 /** @typedef {{ topic: string, type: string }} Topic */
 
@@ -45,8 +45,8 @@ export function publishesOf(topics, robot) {
   const own = topics
     .filter((topic) => topic.startsWith(start))
     .map((topic) => topic.slice(start.length).split("/"))
-    .filter((words) => words.length <= 2 && TELLS.includes(words[0]));
-  return TELLS.flatMap((name) => {
+    .filter((words) => words.length <= 2 && PUBLISHES.includes(words[0]));
+  return PUBLISHES.flatMap((name) => {
     const found = own.filter(([first]) => first === name);
     const leaves = found.flatMap(([, leaf]) => leaf ?? []);
     if (found.length === 0) return [];
