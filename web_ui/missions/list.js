@@ -48,7 +48,7 @@ export function openList({ t, language, progress, steps, choose, open, reason })
   const file = h("button", { type: "button", class: "btn line mission-open", title: t("list.file"), onclick: () => input.click() }, icon("open"), h("span", {}, t("list.file")));
   const dialog = h(
     "dialog",
-    { class: "mission-list", "aria-labelledby": "mission-list-title" },
+    { class: "dialog mission-list", "aria-labelledby": "mission-list-title" },
     h("div", { class: "mission-list-head" }, h("h2", { id: "mission-list-title" }, t("title")), h("span", { class: "grow" }), file, input, close),
     body,
   );

@@ -29,7 +29,7 @@ function dialogOf(title, content, choices, t) {
   );
   const dialog = h(
     "dialog",
-    { class: "sharing", "aria-labelledby": "sharing-title" },
+    { class: "dialog sharing", "aria-labelledby": "sharing-title" },
     h(
       "div",
       { class: "sharing-head" },

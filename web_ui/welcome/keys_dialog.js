@@ -16,7 +16,7 @@ export function openKeys(language) {
     h("div", {}, h("dt", {}, ...[...held, ...keys].map(cap)), h("dd", {}, keysText(text)));
   const dialog = h(
     "dialog",
-    { class: "welcome-keys", "aria-labelledby": "keys-title" },
+    { class: "dialog welcome-keys", "aria-labelledby": "keys-title" },
     h(
       "div",
       { class: "welcome-head" },
