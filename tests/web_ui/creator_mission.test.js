@@ -9,7 +9,7 @@ import { added, newPlayground } from "../../web_ui/creator/commands.js";
 import { write } from "../../web_ui/playground/document.js";
 import { parseDraft, writeDraft } from "../../web_ui/playground/draft_text.js";
 import { FACTS, LANGUAGES, newGoal, newMission, problemsOf, withMission } from "../../web_ui/playground/mission.js";
-import { missionFile, missionOf, pack, unpack } from "../../web_ui/playground/mission_file.js";
+import { missionFile, missionOf, pack, unpack } from "../../web_ui/playground/mission_archive.js";
 import { Fault } from "../../web_ui/playground/rules.js";
 import texts from "../../web_ui/i18n/creator.texts.js";
 

@@ -8,7 +8,7 @@ import texts from "../../web_ui/i18n/missions.texts.js";
 import { translator } from "../../web_ui/i18n/index.js";
 import { outcome, starTexts } from "../../web_ui/missions/card.js";
 import { firstOpen, titleIn } from "../../web_ui/missions/list.js";
-import { looksLikeMission } from "../../web_ui/missions/mission_file.js";
+import { looksLikeMission } from "../../web_ui/missions/file_kind.js";
 import { blockWords, codeLines, firstMissing, nextStep } from "../../web_ui/missions/next_step.js";
 import { Progress } from "../../web_ui/missions/progress.js";
 import { fetchMissions } from "../../web_ui/missions/steps.js";

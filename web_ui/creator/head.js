@@ -5,7 +5,7 @@ import { textOf } from "../browser/text_file.js";
 import { BUILT_IN } from "../playground/declarations.js";
 import { parse } from "../playground/document.js";
 import { problemsOf } from "../playground/mission.js";
-import { pack, unpack } from "../playground/mission_file.js";
+import { pack, unpack } from "../playground/mission_archive.js";
 import { Fault, fits } from "../playground/rules.js";
 import { reasonOfFault, refusalView } from "../playground_tab/refusal.js";
 import { h, lock, setAttribute, setText } from "../ui/dom.js";

@@ -2,7 +2,7 @@
 // demand; a visit without a mission loads nothing.
 
 import { localStore } from "../browser/local_storage.js";
-import { looksLikeMission } from "../missions/mission_file.js";
+import { looksLikeMission } from "../missions/file_kind.js";
 import { Progress } from "../missions/progress.js";
 import { fetchMissions } from "../missions/steps.js";
 import { disabledReason } from "../state/disabled_reason.js";

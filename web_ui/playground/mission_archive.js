@@ -1,4 +1,4 @@
-// The file of a mission: a ZIP archive with the mission, its playground and start programs. Pure.
+// The archive of a mission: ZIP with the mission, its playground and start programs. Pure.
 
 import { strFromU8, strToU8, unzipSync, zipSync } from "fflate";
 
