@@ -40,6 +40,7 @@ test("a pupil needs help with a mistake or a broken simulator, not while waiting
 test("a raised hand needs help, and so does a robot that is stuck in a mission while its program runs", () => {
   assert.ok(needsHelp(pupil({ hand: "2026-11-30T10:00:00+01:00", paused: true })));
   assert.ok(needsHelp(pupil({ trouble: "stuck" })));
+  assert.ok(needsHelp(pupil({ trouble: "tries", paused: true })));
   assert.ok(!needsHelp(pupil({ trouble: "stuck", paused: true, held: true })));
 });
 

@@ -30,6 +30,7 @@ from thymio_sim_ros.classroom.bridge_client import (
 )
 from thymio_sim_ros.classroom.folder import ClassFolder, Place, Work
 from thymio_sim_ros.classroom.handouts import Handout, Handouts, now
+from thymio_sim_ros.classroom.many_tries import TryHistory
 from thymio_sim_ros.classroom.progress import ProgressLog
 from thymio_sim_ros.classroom.suite_process import SuiteOptions, SuiteProcess, command, environment, free_port
 from thymio_sim_ros.classroom.suite_state import MissionTry
@@ -82,6 +83,7 @@ class Seat:
         """How far the pupil is with what was handed out."""
         self.hand = ""
         """When the pupil raised a hand (ISO 8601); "": it is not raised."""
+        self._tries = TryHistory()
         self._handouts = handouts
         self._options, self._folder = options, folder
         self._starting = starting or asyncio.Semaphore(1)
@@ -318,6 +320,7 @@ class Seat:
                 self.progress.run(handout, value)
 
     def _on_try(self, attempt: MissionTry) -> None:
+        self._tries.add(attempt)
         of_class = (one for one in self._handouts.of(self.place.id) if one.kind == "mission")
         handout = next((one for one in of_class if one.stem == attempt.mission), None)
         if handout is not None:
@@ -337,6 +340,13 @@ class Seat:
         """The playground of the suite, as `load_playground` takes it."""
         self.plan = hashlib.sha256(value.encode("utf-8", "surrogatepass")).hexdigest()[:16]
         """Names it; the same for the same playground."""
+
+    def _trouble(self) -> str:
+        """What hinders the pupil in the mission that is open: that of the robot, or else "tries" (see `TryHistory`)."""
+        attempt = self.status.attempt
+        if attempt is None:
+            return ""
+        return attempt.trouble or ("tries" if self._tries.is_stuck else "")
 
     async def _attempt(self, request: Any) -> None:
         with contextlib.suppress(OSError, WebSocketException):  # the suite has just ended, and is restarted
@@ -362,7 +372,7 @@ class Seat:
             "programs": programs,
             "overview": client.overview,
             "hand": self.hand,
-            "trouble": "" if client.attempt is None else client.attempt.trouble,
+            "trouble": self._trouble(),
             "plan": self.plan,
             "link": f"../p/{self.link()}",
             "watch": f"../p/{self.link(read_only=True)}",

@@ -49,6 +49,9 @@ class MissionTry:
     """Simulated time of the try."""
     trouble: str
     """fallen, stuck, idle (the program has done nothing yet), or ""."""
+    done: int = 0
+    """Lines of the checklist that are done."""
+    is_over: bool = False
 
 
 def read_state(text: str) -> SuiteState:
@@ -77,14 +80,27 @@ def read_try(text: str) -> MissionTry:
         case {
             "mission": str(mission),
             "tries": int(tries),
+            "done": list(done),
             "state": str(state),
             "stars": list(stars),
             "at_s": int() | float() as at_s,
             "trouble": str(trouble),
         } if len(mission) <= _LONGEST_NAME and not isinstance(tries, bool):
-            reached = sum(star is True for star in stars)
-            return MissionTry(mission, tries, state == "passed", min(reached, _MOST_STARS), _finite(at_s), trouble[:20])
-    raise SuiteStateError("expected the fields mission, tries, state, stars, at_s and trouble")
+            return MissionTry(
+                mission,
+                tries,
+                has_passed=state == "passed",
+                stars=min(_count(stars), _MOST_STARS),
+                at_s=_finite(at_s),
+                trouble=trouble[:20],
+                done=_count(done),
+                is_over=state in ("passed", "failed"),
+            )
+    raise SuiteStateError("expected the fields mission, tries, done, state, stars, at_s and trouble")
+
+
+def _count(values: list[object]) -> int:
+    return sum(value is True for value in values)
 
 
 def _object(text: str) -> dict[str, Any]:

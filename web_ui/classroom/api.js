@@ -18,7 +18,7 @@
  * @property {string} plan        names the playground
  * @property {string} notice      the message on the pupil's page
  * @property {string} hand       when the pupil raised a hand; "": it is not raised
- * @property {string} trouble    of the mission that is open: fallen, stuck, idle, or ""
+ * @property {string} trouble    in the mission that is open: fallen, stuck, idle, tries (many of them got no further), or ""
  * @property {string} link
  * @property {string} watch       link to watch only
  */

@@ -110,7 +110,7 @@ function detailsOf(pupil, t) {
   const parts = programs.map(({ program, line, fault }) =>
     [program, line === "" ? "" : t("line", { line }), fault].filter((part) => part !== "").join(", "),
   );
-  if (pupil.trouble === "stuck" || pupil.trouble === "idle") parts.unshift(t(`trouble.${pupil.trouble}`));
+  if (["stuck", "idle", "tries"].includes(pupil.trouble)) parts.unshift(t(`trouble.${pupil.trouble}`));
   if (slow !== null) parts.push(t("slow", { percent: slow }));
   if (reason !== "") parts.push(t("restarts", { count: restarts, reason }));
   return parts.join(" · ");

@@ -16,10 +16,10 @@ export function pupilState({ phase, fallen, programs, paused, held }) {
   return states.find(needsLook) ?? (paused ? (held ? "held" : "paused") : (states[0] ?? "idle"));
 }
 
-/** Whether the teacher should have a look: also at a robot that is stuck, or does nothing, in a mission. @param {Pupil} pupil */
+/** Whether the teacher should have a look: also at a robot that is stuck or does nothing in a mission, and at tries in vain. @param {Pupil} pupil */
 export function needsHelp(pupil) {
   const state = pupilState(pupil);
-  if (pupil.hand !== "" || (pupil.trouble !== "" && state === "runs")) return true;
+  if (pupil.hand !== "" || pupil.trouble === "tries" || (pupil.trouble !== "" && state === "runs")) return true;
   return state === "broken" || (state !== "paused" && state !== "held" && state !== "waiting" && state !== "starting" && needsLook(state));
 }
 
