@@ -43,8 +43,8 @@ def test_a_class_gets_a_point_for_each_star(tmp_path: Path, capsys: pytest.Captu
         (tmp_path / "class" / name / "my program.aesl").write_text(text, encoding="utf-8")
     grades = tmp_path / "grades"
     assert main(["grade", str(tmp_path / "class"), "--assignment", "relay", "-o", str(grades), "--workers", "1"]) == 0
-    assert marks(grades) == {"Anna": "2", "Bea": "0", "Carl": "1"}
-    assert "solution: 2 of 2 points" in capsys.readouterr().out
+    assert marks(grades) == {"Anna": "3", "Bea": "0", "Carl": "2"}
+    assert "solution: 3 of 3 points" in capsys.readouterr().out
     (page,) = grades.glob("pupils/Bea-*/index.html")
     assert "bert waits" in page.read_text(encoding="utf-8") or "anna sends 5" in page.read_text(encoding="utf-8")
 
@@ -58,7 +58,7 @@ def test_a_node_is_graded_by_a_mission(tmp_path: Path) -> None:
         shutil.copy(source, tmp_path / "class" / name / "first_node.py")
     arguments = ["--assignment", "first_node", "-o", str(tmp_path / "grades"), "--workers", "1"]
     assert main(["grade", str(tmp_path / "class"), *arguments]) == 0
-    assert marks(tmp_path / "grades") == {"Anna": "2", "Bea": "0"}
+    assert marks(tmp_path / "grades") == {"Anna": "3", "Bea": "0"}
 
 
 @pytest.mark.parametrize("name", OF_ASEBA)

@@ -20,7 +20,7 @@ from thymio_sim_ros.missions.trial import judged_run
 
 MISSIONS = {each.name: each for step in shipped() for each in step.missions}
 ORDER = list(MISSIONS)
-NUMBER = 20
+NUMBER, STARS = 20, 3
 LARGEST_PICTURE = 10_000
 NODE = "ros"
 SOLUTIONS = [(name, language) for name, each in MISSIONS.items() for language in each.mission.languages]
@@ -32,6 +32,12 @@ PLUGINS = {"vpl": "ThymioVisualProgramming", "blocks": "ThymioBlockly", "scratch
 def test_no_mission_is_forgotten() -> None:
     assert len(MISSIONS) == NUMBER
     assert all(set(each.mission.solutions) == set(each.mission.languages) for each in MISSIONS.values())
+    assert {name: 1 + len(each.mission.stars) for name, each in MISSIONS.items()} == dict.fromkeys(MISSIONS, STARS)
+
+
+def test_no_mission_has_two_stars_for_its_time() -> None:
+    timed = [sum(star.within_s is not None for star in each.mission.stars) for each in MISSIONS.values()]
+    assert max(timed) == 1
 
 
 @pytest.mark.parametrize(("name", "language"), OF_ASEBA)

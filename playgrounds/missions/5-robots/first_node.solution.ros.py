@@ -1,10 +1,11 @@
-"""A node that drives, and stops in front of things."""
+"""A node that drives, and stops in front of things with a red light."""
 
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from sensor_msgs.msg import Range
+from std_msgs.msg import ColorRGBA
 
 
 class Driver(Node):
@@ -12,6 +13,7 @@ class Driver(Node):
         super().__init__("driver")
         self.ahead = float("inf")
         self.wheels = self.create_publisher(Twist, "cmd_vel", 10)
+        self.light = self.create_publisher(ColorRGBA, "led/body/top", 10)
         self.create_subscription(Range, "proximity/center", self.see, 10)
         self.create_timer(0.1, self.drive)
 
@@ -19,10 +21,13 @@ class Driver(Node):
         self.ahead = seen.range
 
     def drive(self):
-        command = Twist()
+        command, color = Twist(), ColorRGBA(a=1.0)
         if self.ahead > 0.06:
             command.linear.x = 0.1
+        else:
+            color.r = 1.0
         self.wheels.publish(command)
+        self.light.publish(color)
 
 
 def main():
