@@ -58,7 +58,18 @@ def make(page):
     choose(page, '[data-goal="goals[1]"] [data-field=color]', "green", "mission.goals[1].values.color === 'green'")
     choose(page, "[data-field=order]", "then", "mission.order === 'then'")
     press(page, "[data-verb=add-never]", "mission.never.length === 1")
+    write(page, '[data-goal="goals[0]"] [data-field=missing]', "Not there yet", "mission.goals[0].missing !== ''")
+    press(page, "[data-verb=add-happens]", "mission.happens.length === 1")
+    choose(page, '[data-goal="happens[0]"] [data-field=action]', "hand", "mission.happens[0].hand === 'left'")
+    choose(page, '[data-goal="happens[0]"] [data-field=hand]', "away", "mission.happens[0].hand === 'away'")
+    press(page, "[data-verb=add-extra]", "mission.extra.length === 1")
+    press(page, '[data-goal="extra[0]"] [data-field=once]', "mission.extra[0].once")
     write(page, "[data-field=within_s]", "20", "mission.within_s === 20")
+    page.click(".by-hand summary")
+    page.fill("#mission-kept", '{"nxt": "wall"}')
+    page.locator("#mission-kept").blur()
+    playwright.expect(page.locator("#mission-kept-problem")).to_have_text("nxt is no word for this place.")
+    write(page, "#mission-kept", '{"next": "wall"}', "mission.kept.next === 'wall'")
     write(page, "#mission-story", "Drive to the square.", "mission.story.endsWith('square.')")
     page.fill("#mission-hints", "Turn left.\nThen stop.")
     page.click("[data-language=vpl]")  # the text is finished by this press, which counts
@@ -81,7 +92,9 @@ def test_a_mission_is_made_saved_and_opened_again(at_rest, page, tmp_path):
     mission = load_mission(tmp_path / "mission.json")
     assert mission.success == {"then": ["goal_1", "goal_2"]}
     assert mission.failure == "never_1"
-    assert [star.within_s for star in mission.stars] == [20.0]
+    assert [(star.within_s, star.when) for star in mission.stars] == [(20.0, None), (None, {"once": "star_1"})]
+    assert (mission.missing_text("goal_1"), mission.next) == ("Not there yet", "wall")
+    assert [(each.at_s, type(each.command).__name__) for each in mission.happens] == [(1.0, "SetProximity")]
     assert mission.hints == ("Turn left.", "Then stop.")
     assert mission.text_of("goal_2") == "Its light is green"
     assert list(mission.zones) == ["rectangle_1"]
@@ -99,10 +112,11 @@ def test_a_mission_is_made_saved_and_opened_again(at_rest, page, tmp_path):
     assert opened == made | {
         "goals": [{**goal, "text": mission.text_of(f"goal_{index}")} for index, goal in enumerate(made["goals"], 1)],
         "never": [{**goal, "text": mission.text_of(f"never_{index}")} for index, goal in enumerate(made["never"], 1)],
+        "extra": [{**goal, "text": mission.text_of(f"star_{index}")} for index, goal in enumerate(made["extra"], 1)],
     }
 
 
-def test_what_is_missing_is_said_and_a_form_that_cannot_have_a_mission_leaves_the_work(at_rest, page, tmp_path):
+def test_what_is_missing_is_said_and_a_file_that_cannot_be_read_leaves_the_work(at_rest, page, tmp_path):
     open_creator(page, at_rest)
     page.click(".mission-form summary")
     page.click("[data-verb=make-mission]")
@@ -112,10 +126,10 @@ def test_what_is_missing_is_said_and_a_form_that_cannot_have_a_mission_leaves_th
     other = tmp_path / "other.zip"
     with zipfile.ZipFile(other, "w") as archive:
         archive.writestr(
-            "mission.json", '{"format": 1, "title": "x", "playground": "playground.json", "success": {"not": "a"}}'
+            "mission.json", '{"format": 1, "title": "x", "playground": "playground.json", "facts": [], "success": "a"}'
         )
         archive.writestr("playground.json", '{"format": 1, "title": "x", "shapes": [], "robots": []}')
     page.set_input_files("#creator-file", str(other))
     reason = page.locator(".creator .fault .reason")
-    playwright.expect(reason).to_contain_text("parts that this form does not have")
+    playwright.expect(reason).to_contain_text("cannot be read")
     wait_for_mission(page, "mission.goals.length === 1")

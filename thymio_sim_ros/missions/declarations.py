@@ -11,8 +11,19 @@ from typing import Any
 
 from thymio_sim_ros.missions.conditions import MAX_SECONDS
 from thymio_sim_ros.missions.facts import FACTS
-from thymio_sim_ros.missions.file_fields import FORMAT, MAX_FACTS, MAX_HINTS, FactHead, Head, StarFields
+from thymio_sim_ros.missions.file_fields import (
+    FORMAT,
+    MAX_FACTS,
+    MAX_HAPPENINGS,
+    MAX_HINTS,
+    MAX_STARS,
+    FactHead,
+    HappeningFields,
+    Head,
+    StarFields,
+)
 from thymio_sim_ros.missions.mission import PROGRAM_LANGUAGES
+from thymio_sim_ros.missions.schema import schema
 from thymio_sim_ros.sim.model.field_declarations import field_declarations
 
 __all__ = ["declarations"]
@@ -21,15 +32,18 @@ __all__ = ["declarations"]
 def declarations() -> dict[str, Any]:
     """The declarations of mission files.
 
-    Keys: `format`, `languages`, `limits` (numbers of items, and `hold_s`: the longest time of a condition), `head`,
-    `star`, `fact` (fields of all facts) and `facts` (kind → its fields).
+    Keys: `format`, `words` (the members of a file), `languages`, `limits` (numbers of items, and `hold_s`: the longest
+    time of a condition), `head`, `star`, `happening`, `fact` (fields of all facts) and `facts` (kind → its fields).
     """
+    limits = {"facts": MAX_FACTS, "hints": MAX_HINTS, "happens": MAX_HAPPENINGS, "stars": MAX_STARS}
     return {
         "format": FORMAT,
+        "words": [word for word in schema()["properties"] if not word.startswith("$")],
         "languages": list(PROGRAM_LANGUAGES),
-        "limits": {"facts": MAX_FACTS, "hints": MAX_HINTS, "hold_s": MAX_SECONDS},
+        "limits": limits | {"hold_s": MAX_SECONDS},
         "head": field_declarations(Head),
         "star": field_declarations(StarFields),
+        "happening": field_declarations(HappeningFields),
         "fact": field_declarations(FactHead),
         "facts": {kind: field_declarations(fact) for kind, fact in FACTS.items()},
     }

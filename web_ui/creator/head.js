@@ -12,7 +12,7 @@ import { h, lock, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { menu } from "../ui/menu.js";
 import { newPlayground, titled } from "./commands.js";
-import { usualText } from "./mission_form.js";
+import { usualText } from "./mission_goals.js";
 
 /** @typedef {import("../browser/opened_file.js").Place} Place */
 /** @typedef {import("../i18n/index.js").Translate} Translate */

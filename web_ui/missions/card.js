@@ -341,7 +341,7 @@ export class MissionCard {
     return h("button", { type: "button", class: "btn line slim", "data-mission-do": "step", onclick: () => void show() }, icon("eye", { small: true }), t("showStep"));
   }
 
-  /** Tell screen readers what has changed. @param {Mission} mission @param {Try | null} attempt */
+  /** Announce what has changed to screen readers. @param {Mission} mission @param {Try | null} attempt */
   #say(mission, attempt) {
     if (attempt === null) return;
     const { t } = this;

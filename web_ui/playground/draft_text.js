@@ -1,8 +1,10 @@
 // The text by which the browser keeps a playground, with its mission if it has one. Pure.
 
 import { parse, write } from "./document.js";
+import { GOAL_LISTS, goalOfKind, newMission, withMission } from "./mission.js";
 
 /** @typedef {import("./document.js").Playground} Playground */
+/** @typedef {import("./mission.js").Goal} Goal */
 
 /** The text by which the browser keeps a playground. @param {Playground} playground */
 export function writeDraft(playground) {
@@ -20,7 +22,9 @@ export function parseDraft(text) {
     // `parse` says what is wrong.
   }
   if (typeof data?.playground !== "string") return parse(text);
-  return { ...parse(data.playground), mission: data.mission };
+  const mission = { ...newMission(), ...data.mission };
+  const goals = GOAL_LISTS.map((list) => [list, mission[list].map((/** @type {Goal} */ goal) => ({ ...goalOfKind(goal.kind), ...goal }))]);
+  return withMission(parse(data.playground), { ...mission, ...Object.fromEntries(goals) }); // an earlier version had fewer fields
 }
 
 /** The file of the playground alone, of what the browser keeps. @param {string} text */
