@@ -67,6 +67,14 @@ def test_a_condition_that_is_too_deep_is_refused() -> None:
         read_condition(data, "success", NAMES)
 
 
+def test_a_condition_that_would_slow_down_each_tick_is_refused() -> None:
+    data: object = "a"
+    for _ in range(3):
+        data = {"all": [data] * 30}
+    with pytest.raises(FieldError, match="success: found 27000 names of facts, expected at most 200"):
+        read_condition(data, "success", NAMES)
+
+
 def test_the_facts_of_a_condition_are_known_in_order() -> None:
     data = {"then": [{"hold": "b", "for_s": 2}, {"any": ["a", {"at_most": 2, "of": "c"}]}]}
     assert list(names_in(data)) == ["b", "a", "c"]

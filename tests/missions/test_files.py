@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import tempfile
@@ -11,7 +12,9 @@ from pathlib import Path
 import pytest
 
 from thymio_sim_ros.missions import MissionError, load_mission
+from thymio_sim_ros.missions.description import described
 from thymio_sim_ros.missions.trial import judged_run
+from thymio_sim_ros.sim.model.fields import FieldError
 
 PLAYGROUND = {
     "format": 1,
@@ -105,3 +108,47 @@ def test_a_zip_that_was_cut_or_has_no_mission_is_refused(tmp_path: Path) -> None
     path.write_bytes(empty.getvalue())
     with pytest.raises(MissionError, match="found 0 missions in the zip"):
         load_mission(path)
+
+
+@pytest.mark.parametrize(
+    ("members", "error"),
+    [
+        ({"playground": "/etc/hosts"}, "playground: found '/etc/hosts', expected a file of the zip, or a shipped name"),
+        ({"playground": "../hall"}, "playground: found '../hall', expected a file of the zip, or a shipped name"),
+        ({"robots": {"anna": "/etc/hosts"}}, "robots.anna: found '/etc/hosts', expected a file of the zip"),
+        ({"robots": {"anna": "~/secret"}}, "robots.anna: found '~/secret', expected a file of the zip"),
+        ({"next": "/etc/hosts"}, "next: found '/etc/hosts', expected a file of the zip"),
+    ],
+)
+def test_a_zip_names_no_other_file_of_the_computer(tmp_path: Path, members: dict[str, object], error: str) -> None:
+    with pytest.raises(MissionError, match=error):
+        load_mission(packed(tmp_path, FILES, **members))
+
+
+def test_a_zip_with_changed_bytes_is_refused_or_read_and_nothing_else(tmp_path: Path) -> None:
+    path = packed(tmp_path, FILES)
+    data = path.read_bytes()
+    for at in range(4, len(data), 3):
+        path.write_bytes(data[:at] + bytes([data[at] ^ 0xFF]) + data[at + 1 :])
+        with contextlib.suppress(MissionError):
+            load_mission(path)
+
+
+@pytest.mark.parametrize("name", ["a" * 300, "start.aesl/inner.aesl"])
+def test_a_name_that_no_file_can_have_is_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(MissionError, match="in the zip, expected one that a file can have"):
+        load_mission(packed(tmp_path, FILES | {name: b""}))
+
+
+@pytest.mark.parametrize(
+    ("programs", "error"),
+    [
+        ({"text": "gone.aesl"}, "programs.text: found no file 'gone.aesl', expected a program beside the mission"),
+        ({"text": "pictures/raw.aesl"}, "programs.text: found an invalid byte in 'raw.aesl', expected UTF-8 text"),
+        ({"text": "pictures/long.aesl"}, "programs.text: found 2000000 bytes in 'long.aesl', expected at most 1000000"),
+    ],
+)
+def test_a_program_that_pages_cannot_have_names_its_place(tmp_path: Path, programs: dict[str, str], error: str) -> None:
+    files = FILES | {"pictures/raw.aesl": b"\xff", "pictures/long.aesl": b"#" * 2_000_000}
+    with pytest.raises(FieldError, match=error):
+        described(load_mission(packed(tmp_path, files, programs=programs)))

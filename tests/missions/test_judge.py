@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -198,6 +199,22 @@ STILL = {"a": {"kind": "still"}}
         (STILL, {"translations": {"german": {}}}, "translations.german: found 'german'"),
         (STILL, {"translations": {"de": {"facts": {"b": "x"}}}}, "translations.de.facts.b: found an unknown fact"),
         (STILL, {"hints": ["one\ntwo"]}, r"hints\[0\]: found"),
+        (
+            STILL,
+            {"languages": ["text", "vpl", "text"]},
+            r"languages\[2\]: found 'text' again, expected each language once",
+        ),
+        (
+            {f"a{number}": {"kind": "still"} for number in range(10_000)},
+            {},
+            "facts: found 10000 of them, expected at most 50",
+        ),
+        (STILL, {"time_s": math.nan}, "line .*: found NaN, expected finite numbers"),
+        (STILL, {"time_s": math.inf}, "line .*: found Infinity, expected finite numbers"),
+        (STILL, {"time_s": 10**400}, "time_s: found 1000"),
+        (STILL, {"stars": [{"within_s": 10**400}]}, r"stars\[0\].within_s: found 1000"),
+        (STILL, {"happens": [{"at_s": -1, "tap": True}]}, r"happens\[0\].at_s: found -1"),
+        (STILL, {"success": {"hold": "a", "for_s": 10**400}}, "success.for_s: found 1000"),
     ],
 )
 def test_a_file_that_is_wrong_names_the_field(
@@ -207,9 +224,18 @@ def test_a_file_that_is_wrong_names_the_field(
         load_mission(mission(facts, **members))
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{", "\xff"])
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{", "\xff", "[" * 100_000, '{"format": 1, "title": ' + "[" * 900 + "]" * 900 + "}"]
+)
 def test_a_file_that_is_no_mission_is_refused(tmp_path: Path, text: str) -> None:
     path = tmp_path / "mission.json"
     path.write_bytes(text.encode("latin-1"))
     with pytest.raises(MissionError, match=r"mission\.json: "):
+        load_mission(path)
+
+
+def test_a_name_that_is_there_twice_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "mission.json"
+    path.write_text('{"format": 1,\n "facts": {"a": {"kind": "still"}, "a": {"kind": "fallen"}}}')
+    with pytest.raises(MissionError, match="line 2, column 36: found the duplicate key 'a', expected unique keys"):
         load_mission(path)

@@ -27,6 +27,8 @@ Facts = Mapping[str, bool]
 """Whether each fact is true in a tick, by name."""
 
 MAX_PARTS, MAX_DEPTH = 30, 8
+MAX_NAMES = 200
+"""Names of facts in a condition, which is judged in each tick."""
 MAX_SECONDS, MAX_TIMES = 3600.0, 1000
 
 
@@ -98,8 +100,15 @@ class _AtMost:
         return self._left >= 0
 
 
-def read_condition(data: object, key: str, facts: Collection[str], depth: int = 0) -> Condition:
+def read_condition(data: object, key: str, facts: Collection[str]) -> Condition:
     """Read a condition over facts of these names. Raises FieldError with the path of what is wrong."""
+    condition = _read_condition(data, key, facts, 0)
+    if (names := sum(1 for _ in names_in(data))) > MAX_NAMES:
+        raise FieldError(key, f"{names} names of facts", f"at most {MAX_NAMES}")
+    return condition
+
+
+def _read_condition(data: object, key: str, facts: Collection[str], depth: int) -> Condition:
     if isinstance(data, str):
         if data not in facts:
             raise FieldError(key, f"'{data}'", f"a fact: {nearest(data, tuple(facts))}" if facts else "a fact")
@@ -114,7 +123,7 @@ def read_condition(data: object, key: str, facts: Collection[str], depth: int = 
     for name in data:
         if name != word and name not in others:
             raise FieldError(join(key, str(name)), "an unknown key", nearest(str(name), (word, *others)))
-    return read(data, key, lambda part, place: read_condition(part, place, facts, depth + 1))
+    return read(data, key, lambda part, place: _read_condition(part, place, facts, depth + 1))
 
 
 def names_in(data: object) -> Iterator[str]:

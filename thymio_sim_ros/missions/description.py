@@ -10,9 +10,12 @@ from thymio_sim_ros.missions.live import LiveMission
 from thymio_sim_ros.missions.mission import Mission
 from thymio_sim_ros.missions.zones import ZONES
 from thymio_sim_ros.sim.model import fields
+from thymio_sim_ros.sim.model.fields import FieldError
 
 __all__ = ["described", "progress"]
 
+MAX_PROGRAM_BYTES = 1_000_000
+"""Of a program that is sent to pages."""
 WAITING = "waiting"
 """State before the first try, and after the program was stopped."""
 
@@ -23,7 +26,7 @@ _KINDS = {kind: word for word, kind in ZONES.items()}
 def described(mission: Mission) -> dict[str, Any]:
     """What a pupil needs of a mission: texts in all languages, zones, start programs, solutions for the next step.
 
-    Raises OSError, UnicodeDecodeError for a program that cannot be read.
+    Raises FieldError for a program that cannot be read.
     """
     return {
         "title": mission.title,
@@ -35,8 +38,8 @@ def described(mission: Mission) -> dict[str, Any]:
         "missing": {name: mission.missing_text(name) for name in mission.facts},
         "stars": [{"text": star.text, "within_s": star.within_s, "length": star.length} for star in mission.stars],
         "zones": {name: {"kind": _KINDS[type(zone)]} | fields.write(zone) for name, zone in mission.zones.items()},
-        "programs": {language: _text(path) for language, path in mission.programs.items()},
-        "solutions": {language: _text(path) for language, path in mission.solutions.items()},
+        "programs": _texts("programs", mission.programs),
+        "solutions": _texts("solutions", mission.solutions),
         "toolbox": {"hide": list(mission.toolbox.hide), "modes": mission.toolbox.modes},
         "translations": {
             language: {
@@ -85,5 +88,18 @@ def progress(live: LiveMission) -> dict[str, Any]:
     }
 
 
-def _text(path: str) -> str:
-    return Path(path).read_text(encoding="utf-8")
+def _texts(key: str, programs: Mapping[str, str]) -> dict[str, str]:
+    """The texts of programs by language."""
+    return {language: _text(f"{key}.{language}", Path(path)) for language, path in programs.items()}
+
+
+def _text(key: str, path: Path) -> str:
+    try:
+        data = path.read_bytes()
+        if len(data) > MAX_PROGRAM_BYTES:
+            raise FieldError(key, f"{len(data)} bytes in '{path.name}'", f"at most {MAX_PROGRAM_BYTES}")
+        return data.decode()
+    except UnicodeDecodeError as error:
+        raise FieldError(key, f"an invalid byte in '{path.name}'", "UTF-8 text") from error
+    except (OSError, ValueError) as error:
+        raise FieldError(key, f"no file '{path.name}'", "a program beside the mission") from error

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import atexit
 import io
+import lzma
 import shutil
 import tempfile
 import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
@@ -19,6 +21,10 @@ MAX_ARCHIVE_BYTES = 10_000_000
 MAX_ARCHIVE_FILES = 200
 MAX_PICTURE_BYTES = 1_000_000
 _ZIP = b"PK\x03\x04"
+_DAMAGED = (
+    zipfile.BadZipFile, zipfile.LargeZipFile, zlib.error, lzma.LZMAError, OSError, EOFError, RuntimeError, ValueError,
+)  # fmt: skip
+"""Exceptions for a damaged, encrypted or unusual archive."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +52,11 @@ class Files:
 
     def find_or_name(self, key: str, name: str) -> str:
         """The same for what may also be shipped: a name without an ending."""
-        return self.find(key, name) if PurePosixPath(name).suffix else name
+        if PurePosixPath(name).suffix:
+            return self.find(key, name)
+        if self.is_closed and not name.replace("-", "_").isidentifier():
+            raise FieldError(key, describe(name), "a file of the zip, or a shipped name")
+        return name
 
 
 def is_archive(data: bytes) -> bool:
@@ -71,7 +81,7 @@ def unpack(data: bytes, folder: Path | None = None) -> Path:
             entries = [each for each in archive.infolist() if not each.is_dir() and "__MACOSX" not in each.filename]
             _check(entries)
             contents = {each.filename: archive.read(each) for each in entries}
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, OSError, RuntimeError, EOFError, NotImplementedError) as error:
+    except _DAMAGED as error:
         raise FieldError("", "a damaged zip", "a complete zip with mission.json") from error
     mission = _mission_of(contents)
     if folder is None:
@@ -79,8 +89,11 @@ def unpack(data: bytes, folder: Path | None = None) -> Path:
         atexit.register(shutil.rmtree, folder, ignore_errors=True)
     for name, content in contents.items():
         path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+        except (OSError, ValueError) as error:  # a name that is too long, or both of a file and of a folder
+            raise FieldError("", f"the name {describe(name)} in the zip", "one that a file can have") from error
     return folder / mission
 
 

@@ -17,9 +17,10 @@ from thymio_sim_ros.missions.mission import Mission
 from thymio_sim_ros.sim.actuators.leds import LedState
 from thymio_sim_ros.sim.actuators.loudspeaker import LoudspeakerState
 from thymio_sim_ros.sim.commands import COLORED_GROUPS, Lift, MoveObject, MoveRobot
+from thymio_sim_ros.sim.playground.reader import Playground
 from thymio_sim_ros.sim.robot.robot import Robot
 
-__all__ = ["LiveMission", "Trouble"]
+__all__ = ["LiveMission", "Trouble", "check_fits"]
 
 _CHECK_TICKS = 50
 """Ticks between two looks at the robot."""
@@ -69,6 +70,16 @@ class _Watcher:
         return Trouble.IDLE if not self.has_acted and self.checks >= _IDLE_CHECKS else Trouble.NONE
 
 
+def check_fits(mission: Mission, playground: Playground) -> None:
+    """Raise FieldError for a name that the playground lacks, and for a zone that no robot can reach."""
+    _before_a_try(mission, Engine(playground))
+
+
+def _before_a_try(mission: Mission, engine: Engine) -> Judge:
+    """A judge that changes nothing in the engine: what happens at the beginning comes later."""
+    return Judge(replace(mission, happens=tuple(replace(one, at_s=1.0) for one in mission.happens)), engine)
+
+
 class LiveMission:
     """The mission of an engine. Call `before_tick` and `after_tick` around each step; `close` when it ends.
 
@@ -77,9 +88,8 @@ class LiveMission:
 
     def __init__(self, mission: Mission, engine: Engine, reset: Callable[[], None]) -> None:
         """`reset` resets the engine and whatever shows it. Raises FieldError for a name that the playground lacks."""
-        checked = replace(mission, happens=tuple(replace(one, at_s=1.0) for one in mission.happens))
         self.mission, self.engine = mission, engine
-        judge = Judge(checked, engine)
+        judge = _before_a_try(mission, engine)
         self.robot = judge.robot
         """The robot that the pupil programs."""
         self.checklist = judge.verdict.checklist

@@ -5,7 +5,6 @@ Errors name the file, the key, what was found and what was expected.
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -35,6 +34,7 @@ from thymio_sim_ros.missions.files import MAX_PICTURE_BYTES, Files, is_archive, 
 from thymio_sim_ros.missions.mission import PROGRAM_LANGUAGES, Happening, Mission, MissionFact, Star, Texts, Toolbox
 from thymio_sim_ros.missions.zones import ZONES, Zone
 from thymio_sim_ros.sim.commands import Clap, Command, MoveObject, PressButton, SetProximity, Tap
+from thymio_sim_ros.sim.formats.json_text import parse_json
 from thymio_sim_ros.sim.model.fields import LANGUAGE, FieldError, Text, describe, join, nearest, read
 
 __all__ = ["MissionError", "load_mission"]
@@ -72,11 +72,7 @@ def load_mission(path: Path, *, folder: Path | None = None) -> Mission:
             data, files = inside.read_bytes(), Files(inside.parent, is_closed=True)
         if len(data) > MAX_BYTES:
             raise FieldError("", f"{len(data)} bytes", f"at most {MAX_BYTES}")
-        try:
-            found = json.loads(data)
-        except (UnicodeDecodeError, ValueError, RecursionError) as error:
-            raise FieldError("", str(error), "JSON") from error
-        return _mission(found, files)
+        return _mission(parse_json(data), files)
     except FieldError as error:
         raise MissionError(str(path), error) from error
 
@@ -230,6 +226,8 @@ def _languages(data: object) -> tuple[str, ...]:
     for index, language in enumerate(data):
         if language not in PROGRAM_LANGUAGES:
             raise FieldError(f"languages[{index}]", describe(language), nearest(str(language), PROGRAM_LANGUAGES))
+        if language in data[:index]:
+            raise FieldError(f"languages[{index}]", f"{describe(language)} again", "each language once")
     return tuple(data)
 
 

@@ -113,6 +113,35 @@ def test_a_mission_that_ends_is_not_judged_any_more(ros, simulation):
     assert sim.engine.recorders == [sim.engine.recorders[0]]  # that of the log
 
 
+@pytest.mark.parametrize(
+    ("members", "reason"),
+    [
+        (
+            {"zones": {"z": {"kind": "disc", "x_m": 50, "y_m": 0, "radius_m": 0.1}}},
+            "zones.z: found a zone without ground",
+        ),
+        ({"robot": "bert"}, "facts.bump.robot: found 'bert'"),
+        ({"happens": [{"at_s": 1, "move": "moon", "x_m": 0, "y_m": 0}]}, "happens[0].move: found 'moon'"),
+        ({"programs": {"text": "gone.aesl"}}, "programs.text: found no file 'gone.aesl'"),
+    ],
+)
+def test_a_mission_that_does_not_fit_leaves_the_one_before(ros, simulation, members, reason):
+    sim = simulation(playground="base")
+    assert start(ros, str(BUS)) == ""
+    before, world = sim.simulator.missions.live, sim.simulator.runner.engine
+    file = {
+        "format": 1,
+        "title": "Mine",
+        "playground": "desk",
+        "success": "bump",
+        "facts": {"bump": {"kind": "touches"}},
+    }
+    assert start(ros, "my.json", json.dumps(file | members).encode()).startswith(f"my.json: {reason}")
+    assert sim.simulator.missions.live is before
+    assert sim.simulator.runner.engine is world
+    assert latest(ros, "/simulator/_mission")["title"] == "One round by bus"
+
+
 def test_the_file_of_a_client_is_a_mission(ros, simulation):
     simulation(playground="base")
     file = {"format": 1, "title": "Mine", "playground": "desk", "success": "bump"}

@@ -24,7 +24,7 @@ from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.missions import Mission, MissionError, load_mission
 from thymio_sim_ros.missions.description import described, progress
 from thymio_sim_ros.missions.documents import mission_after
-from thymio_sim_ros.missions.live import LiveMission
+from thymio_sim_ros.missions.live import LiveMission, check_fits
 from thymio_sim_ros.missions.shipped import find_mission
 from thymio_sim_ros.missions.trial import programs_of_others
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
@@ -194,8 +194,11 @@ def _open(name: str, value: str) -> _Opened:
 
 
 def _opened(path: Path, mission: Mission, playground: Playground) -> _Opened:
+    """What is needed to start it. All that the world would refuse is refused here: the mission before goes on."""
     try:
-        return _Opened(path.name, mission, described(mission), programs_of_others(mission, playground))
+        programs = programs_of_others(mission, playground)
+        check_fits(mission, playground)
+        return _Opened(path.name, mission, described(mission), programs)
     except FieldError as error:
         raise MissionError(path.name, error) from error
 

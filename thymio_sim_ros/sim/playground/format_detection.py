@@ -17,12 +17,11 @@ import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
-from typing import NoReturn
 
-from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.sim.formats import xml_tree
 from thymio_sim_ros.sim.formats.html_entities import without_html_entities
 from thymio_sim_ros.sim.formats.image_io import MAX_PICTURE_BYTES
+from thymio_sim_ros.sim.formats.json_text import parse_json
 from thymio_sim_ros.sim.formats.xml_tree import XmlError
 from thymio_sim_ros.sim.model.fields import FieldError, describe
 from thymio_sim_ros.sim.playground.importers import aseba, thesis
@@ -52,22 +51,13 @@ _CANNOT_UNPACK = (
     zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError,
 )  # fmt: skip
 """Exceptions for a damaged, encrypted or unusual archive; ValueError for offsets before its beginning."""
-_WORDS = re.compile(r'"(?:[^"\\]++|\\.)*+"|NaN|-?Infinity')
-"""Strings of JSON, and words that Python takes for numbers outside them."""
-_PARTS = re.compile(r'"(?:[^"\\]++|\\.)*+"|[{}]')
 _STRINGS = re.compile(rb'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
-_COLON = re.compile(r"\s*:")
-"""Follows a string that is a key."""
 _MARKS = re.compile(
     rb'"format"\s*:\s*\d|"(?:%s)"\s*:|<aseba-playground' % "|".join(("playground", *thesis.KEYS)).encode()
 )
 """Distinguishes a playground from any other JSON or XML."""
-_HALVES = re.compile(r"[\ud800-\udfff]")
-"""Surrogates: JSON escapes may contain them, UTF-8 may not, and keys are quoted in errors and notes."""
 _HEAD = 100_000
 """Number of bytes of a file in an archive that are searched for marks."""
-_SHOWN = 12
-"""Number of characters that an error quotes."""
 _IN_FOLDER = "a file in the playground's folder"
 
 
@@ -110,10 +100,7 @@ def read_source(data: bytes, name: str, beside: Beside, part: str = "") -> Sourc
     if data.lstrip().startswith(b"<"):
         return _read_xml(data, name, beside)
     _check_parts(data)
-    try:
-        parsed = _parse_json(data.decode("utf-8"))
-    except UnicodeDecodeError as error:
-        raise FieldError("", f"an invalid byte at offset {error.start}", "UTF-8 text") from error
+    parsed = parse_json(data)
     if isinstance(parsed, Mapping) and "format" not in parsed and parsed.keys() & {"playground", *thesis.KEYS}:
         converted = thesis.convert(parsed, name)
         return Source(converted.data(), beside, tuple(converted.notes), converted.places)
@@ -263,56 +250,3 @@ def _check_parts(data: bytes) -> None:
         if size > most:
             line, column = data.count(b"\n", 0, begin) + 1, begin - data.rfind(b"\n", 0, begin)
             raise FieldError(f"line {line}, column {column}", f"a string of {size} bytes", f"at most {most}")
-
-
-def _parse_json(text: str) -> object:
-    def refuse(word: str) -> NoReturn:
-        place = next(token.start() for token in _WORDS.finditer(text) if token.group() == word)
-        raise FieldError(_line_and_column(text, place), word, "finite numbers")
-
-    def unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
-        members = dict(pairs)
-        if len(members) < len(pairs):
-            raise _TwiceError
-        half = next(filter(_HALVES.search, members), None)
-        if half is not None:
-            raise FieldError("", f"an unpaired surrogate in the key {describe(half)}", "valid Unicode")
-        return members
-
-    try:
-        return json.loads(text, parse_constant=refuse, object_pairs_hook=unique)
-    except json.JSONDecodeError as error:
-        found = repr(text[error.pos : error.pos + _SHOWN]) if error.pos < len(text) else "the end of the text"
-        raise FieldError(_line_and_column(text, error.pos), found, f"JSON ({error.msg})") from error
-    except (RecursionError, ValueError) as error:
-        raise FieldError(
-            "", "numbers that are too long or values nested too deeply", "shorter or flatter data"
-        ) from error
-    except _TwiceError as error:
-        place, key = _second(text)
-        raise FieldError(_line_and_column(text, place), f"the duplicate key {describe(key)}", "unique keys") from error
-
-
-class _TwiceError(ThymioSimError):
-    """A JSON object has a duplicate key."""
-
-
-def _second(text: str) -> tuple[int, str]:
-    """Offset and name of the first duplicate key; there is one."""
-    keys: list[set[str]] = []
-    for token in _PARTS.finditer(text):
-        match token.group():
-            case "{":
-                keys.append(set())
-            case "}":
-                keys.pop()
-            case word if _COLON.match(text, token.end()):
-                key = json.loads(word)
-                if key in keys[-1]:
-                    return token.start(), key
-                keys[-1].add(key)
-    raise AssertionError("there is one")
-
-
-def _line_and_column(text: str, place: int) -> str:
-    return f"line {text.count(chr(10), 0, place) + 1}, column {place - text.rfind(chr(10), 0, place)}"
