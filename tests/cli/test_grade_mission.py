@@ -13,8 +13,9 @@ import pytest
 
 from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.cli.main import main
-from thymio_sim_ros.cli.mission_assignment import mission_assignment
+from thymio_sim_ros.cli.mission_assignment import mission_assignment, with_mission
 from thymio_sim_ros.files.loading import load_playground
+from thymio_sim_ros.grading.assignment import load
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.missions.shipped import shipped
 from thymio_sim_ros.missions.trial import judged_run, robot_of
@@ -109,3 +110,89 @@ def test_a_mission_that_is_wrong_names_its_place(tmp_path: Path, text: str, erro
 def test_an_unknown_mission_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["grade", str(tmp_path), "--assignment", "brakes"]) == USAGE_ERROR
     assert "no mission 'brakes': neither a file nor one of forward, brake" in capsys.readouterr().err
+
+
+BUS = Path(__file__).parents[2] / "docs" / "course" / "3-blocks"
+
+
+def lesson(folder: Path, text: str) -> Path:
+    """The lesson with the bus in a folder, with this assignment."""
+    for name in ("bus.json", "mission.json", "test_bus.py"):
+        shutil.copy(BUS / name, folder)
+    (folder / "assignment.toml").write_text(text, encoding="utf-8")
+    return folder / "assignment.toml"
+
+
+@pytest.mark.process
+def test_an_assignment_has_points_for_tests_and_stars(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = lesson(
+        tmp_path, 'tests = ["test_bus.py"]\nfiles = ["bus.aesl"]\ndata = ["bus.json"]\nmission = "mission.json"'
+    )
+    for name in ("start", "solution"):
+        (tmp_path / "class" / name).mkdir(parents=True)
+        shutil.copy(BUS / "programs" / f"{name}.aesl", tmp_path / "class" / name / "bus.aesl")
+    arguments = ["--assignment", str(path), "-o", str(tmp_path / "grades"), "--workers", "1"]
+    assert main(["grade", str(tmp_path / "class"), *arguments]) == 0
+    assert "13 points" in capsys.readouterr().out
+    assert marks(tmp_path / "grades")["solution"] == "13"
+    assert int(marks(tmp_path / "grades")["start"]) <= 3
+    program = str(BUS / "programs" / "solution.aesl")
+    assert main(["mission", str(path), "--program", program]) == 0
+    assert "★★★ passed" in capsys.readouterr().out
+
+
+def test_an_assignment_may_be_a_mission_alone(tmp_path: Path) -> None:
+    path = lesson(tmp_path, 'mission = "mission.json"\n[limits]\ncpu_s = 7')
+    found = with_mission(load(path))
+    assert (found.tests, found.expected, found.limits.cpu_s) == (("test_mission.py",), ("mission.aesl",), 7.0)
+    assert set(found.content) == {"test_mission.py", "mission.json", "bus.json"}
+    (tmp_path / "assignment.toml").write_text('mission = "mission.json"\nfiles = ["map.json", "my bus.aesl"]')
+    found = with_mission(load(path))
+    assert found.expected == ("map.json", "my bus.aesl")
+    assert '"thymio": "my bus.aesl"' in found.content["test_mission.py"].decode()
+
+
+def test_the_pictures_of_a_playground_are_in_the_assignment(tmp_path: Path) -> None:
+    (tmp_path / "dot.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="4" height="4"/>')
+    picture = {"kind": "picture", "name": "dot", "size_x_m": 0.5, "size_y_m": 0.5, "image": "dot.svg"}
+    hall = {"format": 1, "title": "Hall", "shapes": [picture], "robots": [{"name": "anna", "x_m": 0.0, "y_m": 0.0}]}
+    (tmp_path / "hall.json").write_text(json.dumps(hall))
+    facts = {"a": {"kind": "driven", "distance_m": 0.1}}
+    mission = {"format": 1, "title": "A dot", "playground": "hall.json", "facts": facts, "success": "a"}
+    (tmp_path / "dot.json").write_text(json.dumps(mission))
+    content = mission_assignment(str(tmp_path / "dot.json")).content["hall.json"]
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "hall.json").write_bytes(content)
+    assert (
+        load_playground(str(tmp_path / "elsewhere" / "hall.json"))[1].shapes
+        == load_playground(str(tmp_path / "hall.json"))[1].shapes
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ('mission = "../mission.json"', "mission: found '../mission.json', expected the relative path of a mission"),
+        ("mission = 3", "mission: found 3, expected the relative path of a mission"),
+        ('mission = "other.json"', "no mission|No such file"),
+        (
+            'mission = "mission.json"\nfiles = ["bus.py"]',
+            "found the files bus.py, expected a program that ends in .aesl",
+        ),
+        (
+            'mission = "mission.json"\ntests = ["test_mission.py"]',
+            "found another file test_mission.py in the assignment",
+        ),
+    ],
+)
+def test_an_assignment_whose_mission_is_wrong_names_its_place(tmp_path: Path, text: str, error: str) -> None:
+    (tmp_path / "test_mission.py").write_text("")
+    path = lesson(tmp_path, text)
+    with pytest.raises(GradingError, match=error):
+        with_mission(load(path))
+
+
+def test_an_assignment_without_a_mission_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = lesson(tmp_path, 'tests = ["test_bus.py"]\ndata = ["bus.json"]')
+    assert main(["mission", str(path)]) == USAGE_ERROR
+    assert "mission: found none, expected the file of a mission" in capsys.readouterr().err

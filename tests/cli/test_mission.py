@@ -18,7 +18,7 @@ def judged(capsys: pytest.CaptureFixture[str], lesson: str, program: str, *optio
     return code, capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("lesson", "stars"), [("1-buttons", 2), ("3-blocks", 2), ("4-text", 2)])
+@pytest.mark.parametrize(("lesson", "stars"), [("1-buttons", 2), ("3-blocks", 3), ("4-text", 2)])
 def test_the_solution_passes_and_the_start_does_not(
     capsys: pytest.CaptureFixture[str], lesson: str, stars: int
 ) -> None:
@@ -59,3 +59,36 @@ def test_a_file_that_cannot_be_used_is_one_line(
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
     assert error in lines[0]
+
+
+STILL = {"a": {"kind": "still", "text": "It stands"}}
+WAITING = {"format": 1, "title": "Wait", "playground": "base", "facts": STILL, "success": {"hold": "a", "for_s": 1}}
+DRIVE = "motor.left.target = 200\nmotor.right.target = 200\n"
+
+
+def checked(capsys: pytest.CaptureFixture[str], folder: Path, **members: object) -> tuple[int, str]:
+    """Check a mission in a folder."""
+    (folder / "wait.json").write_text(json.dumps(WAITING | members), encoding="utf-8")
+    code = main(["mission", str(folder / "wait.json"), "--check"])
+    return code, capsys.readouterr().out
+
+
+def test_a_solution_must_pass_and_a_start_must_not(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    (tmp_path / "drive.aesl").write_text(DRIVE)
+    (tmp_path / "wait.aesl").write_text("var a\n")
+    code, output = checked(capsys, tmp_path, solutions={"text": "wait.aesl"}, programs={"text": "drive.aesl"}, time_s=3)
+    assert (code, output) == (0, "solutions.text: ★ passed after 1.01 s\nprograms.text: ☆ failed after 3.00 s\n")
+    code, output = checked(capsys, tmp_path, solutions={"text": "drive.aesl"}, programs={"text": "wait.aesl"}, time_s=3)
+    assert code == 1
+    assert "solutions.text: found 0 of 1 stars, expected all of them" in output
+    assert "programs.text: found a start that passes, expected something to do" in output
+
+
+def test_missions_that_lead_back_to_one_before_are_reported(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    (tmp_path / "more.json").write_text(json.dumps(WAITING | {"next": "wait.json"}), encoding="utf-8")
+    code, output = checked(capsys, tmp_path, next="more.json")
+    assert code == 1
+    assert "next: found the circle wait.json → more.json → wait.json, expected a last mission" in output
+    code, output = checked(capsys, tmp_path, next="wait.json")
+    assert "next: found the circle wait.json → wait.json, expected a last mission" in output
+    assert checked(capsys, tmp_path, next="forward")[0] == 0

@@ -36,7 +36,7 @@ def test_hidden_tests_run_last(tmp_path: Path) -> None:
         ('tests = ["../test_a.py"]', "expected a list of relative paths below its folder"),
         ('tests = ["missing.py"]', "missing.py: No such file"),
         ("", "tests: found none"),
-        ('test = ["a.py"]', "found the key 'test', expected tests, hidden, files, data, solution or limits"),
+        ('test = ["a.py"]', "found the key 'test', expected tests, hidden, files, data, solution, mission or limits"),
         ("limits = 3", "limits: found 3, expected a table"),
         ("[limits]\ncpu = 3", "limits.cpu: unknown, expected one of cpu_s"),
         ("[limits]\ncpu_s = 0", "limits.cpu_s: found 0, expected a number above 0"),

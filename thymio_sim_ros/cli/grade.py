@@ -17,7 +17,7 @@ from thymio_sim_ros.batch_runs.errors import EngineError
 from thymio_sim_ros.batch_runs.failure import Failure
 from thymio_sim_ros.cli.batch import CLUSTER, Progress, add_cluster_options, check_dask
 from thymio_sim_ros.cli.errors import UsageError
-from thymio_sim_ros.cli.mission_assignment import mission_assignment
+from thymio_sim_ros.cli.mission_assignment import mission_assignment, with_mission
 from thymio_sim_ros.cli.ros.graph_choice import check_ros
 from thymio_sim_ros.cli.signal_handling import StopSignal
 from thymio_sim_ros.grading import assignment as assignments
@@ -185,7 +185,7 @@ class _Execution:
 def _assignment(path: Path) -> Assignment:
     """The assignment of a file with tests, or of a mission: a file, or the name of a shipped one."""
     if path.suffix in _TESTS or (path.suffix not in _MISSIONS and path.exists()):
-        return assignments.load(path)
+        return with_mission(assignments.load(path))
     return mission_assignment(str(path))
 
 

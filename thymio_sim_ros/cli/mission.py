@@ -17,6 +17,8 @@ from thymio_sim_ros.course_packages import field_checks
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.files.loading import NO_PROGRAM
 from thymio_sim_ros.files.resources import ResourceError
+from thymio_sim_ros.grading import assignment as assignments
+from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.missions import Judge, Mission, MissionError, Verdict, load_mission
 from thymio_sim_ros.missions.facts import Measured
 from thymio_sim_ros.missions.shipped import Step, find_mission, index, shipped
@@ -54,6 +56,7 @@ def _check(mission: Mission, path: Path, seed: int) -> int:
     named = {"playground": mission.playground, "picture": mission.picture, "next": mission.next}
     files = {key: name for key, name in named.items() if Path(name).suffix}
     mistakes = [f"{path}: {key}: found no file {name}" for key, name in files.items() if not Path(name).is_file()]
+    mistakes += _circles(mission, path)
     lines = []
     runs = [("solutions", *each) for each in mission.solutions.items()]
     runs += [("programs", *each) for each in mission.programs.items()]
@@ -70,6 +73,21 @@ def _check(mission: Mission, path: Path, seed: int) -> int:
         lines.append("no solutions: whether it can be passed is not checked")
     print_text("\n".join([*lines, *mistakes]))
     return NOT_PASSED if mistakes else 0
+
+
+def _circles(mission: Mission, path: Path) -> list[str]:
+    """What is wrong with the missions after this one: they lead back to one of them, or cannot be read."""
+    chain = [path.resolve()]
+    while Path(mission.next).suffix and (following := Path(mission.next).resolve()).is_file():
+        if following in chain:
+            names = " → ".join(each.name for each in [*chain[chain.index(following) :], following])
+            return [f"{path}: next: found the circle {names}, expected a last mission"]
+        chain.append(following)
+        try:
+            mission = load_mission(following)
+        except (MissionError, OSError) as error:
+            return [f"{path}: next: {error}"]
+    return []
 
 
 def _shipped() -> tuple[Step, ...]:
@@ -100,11 +118,18 @@ def _list(language: str) -> str:
 
 
 def _found(name: str) -> Path:
+    """The file of a shipped mission, of a path, or of the mission that an assignment names."""
     try:
         _shipped()
-        return find_mission(name)
-    except ResourceError as error:
+        path = find_mission(name)
+        if path.suffix != ".toml":
+            return path
+        mission = assignments.load(path).mission
+    except (ResourceError, GradingError) as error:
         raise UsageError(str(error)) from error
+    if mission is None:
+        raise UsageError(f"{name}: mission: found none, expected the file of a mission (docs/missions.md)")
+    return mission
 
 
 def _mission(path: Path) -> Mission:
@@ -202,7 +227,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog="exit code: 0 passed; 1 not passed; 2 rejected input",
         allow_abbrev=False,
     )
-    about = "a shipped mission, or a file (docs/missions.md)"
+    about = "a shipped mission, a file (docs/missions.md), or an assignment (*.toml) that names one"
     parser.add_argument("mission", nargs="?", metavar="MISSION", help=about)
     parser.add_argument("--list", action="store_true", help="list the shipped missions, with --json as JSON")
     parser.add_argument(

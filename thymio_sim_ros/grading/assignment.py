@@ -7,6 +7,7 @@ An assignment is a pytest file, or a TOML file beside its tests:
     files = ["follower.aesl"]        # what each submission must contain
     data = ["maze.json"]             # other files that the tests read
     solution = "solution"            # a submission that must get all points
+    mission = "mission.json"         # beside the tests or in place of them: a point for each star
 
     [limits]
     cpu_s = 30
@@ -68,6 +69,8 @@ class Assignment:
     limits: Limits = Limits()
     solution: Path | None = None
     """A submission that must get all points."""
+    mission: Path | None = None
+    """A mission whose stars are points, too; its test is not among `tests` yet."""
     has_installed_ros: bool = False
     """Whether nodes are tested on an installed ROS 2, not on the embedded graph."""
 
@@ -126,18 +129,26 @@ def _load_toml(path: Path) -> Assignment:
     except (ValueError, RecursionError) as error:
         raise GradingError(f"{path}: {error}; expected TOML in UTF-8") from error
     limits = _limits(path, table.pop("limits", {}))
-    solution = table.pop("solution", "")
-    if not isinstance(solution, str) or (solution and not _is_inside(solution)):
-        raise GradingError(f"{path}: solution: found {solution!r}, expected the relative path of a folder, file or zip")
+    solution = _below(path, table, "solution", "the relative path of a folder, file or zip")
+    mission = _below(path, table, "mission", "the relative path of a mission")
     for key, value in table.items():
         if key not in _LISTS:
-            raise GradingError(f"{path}: found the key {key!r}, expected {', '.join(_LISTS)}, solution or limits")
+            raise GradingError(
+                f"{path}: found the key {key!r}, expected {', '.join(_LISTS)}, solution, mission or limits"
+            )
         if not isinstance(value, list) or not all(isinstance(name, str) and _is_inside(name) for name in value):
             raise GradingError(f"{path}: {key}: found {value!r}, expected a list of relative paths below its folder")
-    if not table.get("tests") and not table.get("hidden"):
-        raise GradingError(f"{path}: tests: found none, expected a list of test files")
-    loaded = _assignment(path.stem, path.parent, table, limits)
-    return replace(loaded, solution=path.parent / solution) if solution else loaded
+    if not table.get("tests") and not table.get("hidden") and mission is None:
+        raise GradingError(f"{path}: tests: found none, expected a list of test files, or a mission")
+    return replace(_assignment(path.stem, path.parent, table, limits), solution=solution, mission=mission)
+
+
+def _below(path: Path, table: dict[str, Any], key: str, expected: str) -> Path | None:
+    """Take a path below the folder of an assignment from its table; None: it has none. Raises GradingError."""
+    name = table.pop(key, "")
+    if not isinstance(name, str) or (name and not _is_inside(name)):
+        raise GradingError(f"{path}: {key}: found {name!r}, expected {expected}")
+    return path.parent / name if name else None
 
 
 def _is_inside(name: str) -> bool:
