@@ -13,6 +13,7 @@ const PARTS = [
   { sheet: "class_tab/class_tab.css", own: ["class_tab/", "hosts/class_host.js"] },
   { sheet: "creator/creator.css", own: ["creator/", "hosts/creator_host.js"] },
   { sheet: "vpl/view/vpl.css", own: ["vpl/", "hosts/program_host.js"] },
+  { sheet: "missions/missions.css", own: ["missions/", "hosts/mission_host.js"] },
   { sheet: "sharing/sharing.css", own: ["sharing/", "hosts/share_host.js"] },
   { sheet: "tour/tour.css", own: ["tour/", "hosts/tour_host.js"] },
   { sheet: "welcome/welcome.css", own: ["welcome/", "hosts/welcome_host.js"] },

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { canStart, hasRoomForOffer, isFirstVisit } from "../../web_ui/hosts/welcome_host.js";
+import { canOffer, canStart, isFirstVisit } from "../../web_ui/hosts/welcome_host.js";
 import { INITIAL } from "../../web_ui/state/index.js";
 import { NEW_ROBOT } from "../../web_ui/state/robot.js";
 import { offeredExamples } from "../../web_ui/welcome/offered_examples.js";
@@ -33,12 +33,12 @@ test("they need a robot, a connection that may write, and the running world in t
   assert.equal(canStart({ ...state, robots: {} }, false), false);
 });
 
-test("the tour is offered beside the running world only, not over a workspace or the goal of a mission", () => {
+test("the tour is not offered over an open tab or a mission", () => {
   const state = { ...INITIAL, connection: /** @type {const} */ ("connected"), identified: true };
-  assert.equal(hasRoomForOffer(state, false), true);
-  assert.equal(hasRoomForOffer(state, true), false);
-  assert.equal(hasRoomForOffer({ ...state, connection: "lost" }, false), false);
-  assert.equal(hasRoomForOffer({ ...state, mission: /** @type {any} */ ({ name: "forward" }) }, false), false);
+  assert.equal(canOffer(state, null), true);
+  assert.equal(canOffer(state, "program"), false);
+  assert.equal(canOffer({ ...state, mission: /** @type {any} */ ({ name: "forward" }) }, null), false);
+  assert.equal(canOffer({ ...state, connection: "lost" }, null), false);
 });
 
 test("examples that move by themselves come first; the menu and what only waits are none", () => {

@@ -23,7 +23,7 @@ const ORDERS = ["any", "then", "same"];
 export function missionForm({ setting, model, openProgram }) {
   const { t } = setting.labels;
   const caret = h("span", { class: "turns" }, icon("caretDown", { small: true }));
-  const body = h("div", { class: "mission-body" });
+  const body = h("div", { class: "mission-inputs" });
   const summary = h("summary", {}, icon("flag", { small: true }), h("span", { class: "grow" }, t("mission")), caret);
   const element = h("details", { class: "mission-form disc" }, summary, body);
   body.addEventListener("pointerup", () => model.changed());

@@ -37,13 +37,13 @@ export function canStart({ connection, identified, readOnly, robots }, isBuildin
 }
 
 /**
- * Whether the offer of the tour has room: it would lie over an open workspace, and over the goal of a mission.
+ * Whether the offer of the tour has a place: it would lie over an open workspace, and over the card of a mission.
  *
  * @param {Pick<State, "connection" | "identified" | "mission">} state
- * @param {boolean} isWorking   whether a workspace is open
+ * @param {string | null} tab  the open one
  */
-export function hasRoomForOffer({ connection, identified, mission }, isWorking) {
-  return connection === "connected" && identified && mission === null && !isWorking;
+export function canOffer({ connection, identified, mission }, tab) {
+  return connection === "connected" && identified && mission === null && tab === null;
 }
 
 export class WelcomeHost {
@@ -107,7 +107,7 @@ export class WelcomeHost {
     if (context === null) return;
     // The tour shows what the starts would hide.
     const showsStarts = this.isWanted && !context.tour.isOpen && canStart(state, context.creator.isOpen);
-    const showsOffer = context.tour.isOffered && hasRoomForOffer(state, context.workspace.tab !== null);
+    const showsOffer = context.tour.isOffered && canOffer(state, context.workspace.tab);
     if ((showsStarts || showsOffer) && this.module === null) {
       if (!this.isAsked) void this.#load(true).then(() => context.scene.invalidate());
       return;
