@@ -15,6 +15,7 @@ from std_srvs.srv import Empty
 from visualization_msgs.msg import MarkerArray
 
 from tests import ros_graph
+from thymio_sim_ros.sim.commands import Lift
 
 pytestmark = ros_graph.needs_package("turtlesim")
 
@@ -230,6 +231,30 @@ def test_a_goal_can_be_canceled(sim, goals):
     assert 0.2 < there < 1.0
     sim.step(0.5)
     assert pose_of(sim)[2] == pytest.approx(there, abs=0.02)
+
+
+def test_velocities_do_not_end_a_turn(ros, sim, goals):
+    send, _ = goals
+    handle = send(2.0)
+    ended = handle.get_result_async()
+    velocities = ros.publisher(Twist, "/turtle1/cmd_vel")
+    for _ in range(5):
+        velocities.publish(drive(0.5))
+        sim.step(0.1)
+    sim.until(ended.done, 10.0)
+    assert ended.result().status == GoalStatus.STATUS_SUCCEEDED
+    assert pose_of(sim)[2] == pytest.approx(2.0, abs=0.02)
+
+
+def test_a_turn_that_a_hand_ends_is_aborted_with_the_reason(ros, sim, goals):
+    send, _ = goals
+    logged = ros.collect(Log, "/rosout")
+    handle = send(3.0)
+    sim.engine.post("turtle1", Lift(True))
+    ended = handle.get_result_async()
+    sim.until(ended.done, 10.0)
+    assert ended.result().status == GoalStatus.STATUS_ABORTED
+    sim.until(lambda: any("the robot was lifted" in line.msg for line in logged))
 
 
 def test_a_new_goal_replaces_the_old_one(ros, sim, goals):

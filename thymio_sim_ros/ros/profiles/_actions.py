@@ -39,8 +39,9 @@ TAKEN = "another command drives the wheels"
 class MotorGuard:
     """Drives the wheels for a motion, and notices what ends it: a hand, another command, or an obstacle."""
 
-    def __init__(self, robot: ProfileRobot) -> None:
-        self._robot = robot
+    def __init__(self, robot: ProfileRobot, *, yields: bool = True) -> None:
+        """`yields`: whether another command ends the motion; otherwise the motion goes on, and the command is lost."""
+        self._robot, self._yields = robot, yields
         self._stall = StallDetector(robot.odometry)
         self._last: BodyTwist | None = None
         """The velocity of the last tick."""
@@ -53,7 +54,7 @@ class MotorGuard:
             return None
         if robot.is_lifted:
             return Ended("the robot was lifted")
-        if robot.state(MotorState).speeds_m_s != wheel_speeds(last):
+        if self._yields and robot.state(MotorState).speeds_m_s != wheel_speeds(last):
             self._is_taken = True
             return Ended(TAKEN)
         if self._stall.update(robot.odometry, Velocity(last.linear_m_s, last.angular_rad_s)):
@@ -75,16 +76,35 @@ class MotorGuard:
 class LawMotion:
     """Drives a robot by a law until the goal is reached, or the guard ends it."""
 
-    def __init__(self, robot: ProfileRobot, law: L, feedback: Callable[[type[Any], L], Any]) -> None:
-        """`feedback` makes the feedback of a class from the law."""
+    def __init__(
+        self,
+        robot: ProfileRobot,
+        law: L,
+        feedback: Callable[[type[Any], L], Any],
+        *,
+        result: Callable[[type[Any]], Any] | None = None,
+        by_truth: bool = False,
+        yields: bool = True,
+    ) -> None:
+        """Prepare the motion.
+
+        Args:
+            robot: The robot.
+            law: Gets the pose after each tick.
+            feedback: Makes the feedback of a class from the law.
+            result: Makes the result of a class; None: the pose by odometry.
+            by_truth: Whether the law gets the true pose, not that by odometry.
+            yields: Whether another command for the wheels ends the motion.
+        """
         self._robot, self._law, self._feedback = robot, law, feedback
-        self._guard = MotorGuard(robot)
+        self._result, self._by_truth = result or self._place, by_truth
+        self._guard = MotorGuard(robot, yields=yields)
 
     def step(self) -> Ended | None:
         """See `Motion`."""
         if (ended := self._guard.check()) is not None:
             return ended
-        wanted = self._law.velocity(self._robot.odometry)
+        wanted = self._law.velocity(self._robot.pose if self._by_truth else self._robot.odometry)
         if wanted is None:
             return Ended()
         self._guard.drive(BodyTwist(wanted.linear_m_s, wanted.angular_rad_s))
@@ -95,7 +115,15 @@ class LawMotion:
         return self._feedback(kind, self._law)
 
     def result(self, kind: type[Any]) -> Any:
-        """See `Motion`: the pose by odometry."""
+        """See `Motion`."""
+        return self._result(kind)
+
+    def stop(self) -> None:
+        """See `Motion`."""
+        self._guard.stop()
+
+    def _place(self, kind: type[Any]) -> Any:
+        """A result with the pose by odometry."""
         from thymio_sim_ros.ros.interface.convert_readings import quaternion
         from thymio_sim_ros.ros.interface.headers import stamped
 
@@ -105,10 +133,6 @@ class LawMotion:
         place.position.x, place.position.y, place.orientation = pose.x_m, pose.y_m, quaternion(pose.yaw_rad)
         stamped(message.pose, robot.world.now_ns, robot.names.frame("odom"))
         return message
-
-    def stop(self) -> None:
-        """See `Motion`."""
-        self._guard.stop()
 
 
 def check_number(value: float, what: str, *, most: float = math.inf, is_positive: bool = False) -> float:

@@ -11,9 +11,9 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros.engine.motions import Turn
 from thymio_sim_ros.ros.profiles import (
     ActionRow,
-    Ended,
     InputRow,
     ParameterRow,
     Profile,
@@ -22,6 +22,7 @@ from thymio_sim_ros.ros.profiles import (
     ServiceRow,
     TopicRow,
 )
+from thymio_sim_ros.ros.profiles._actions import LawMotion
 from thymio_sim_ros.sim.actuators.motors import wanted_speeds
 from thymio_sim_ros.sim.actuators.pen import PEN_WIDTHS_M
 from thymio_sim_ros.sim.commands import BodyTwist, Command, DrawJumps, MoveRobot, SetPen
@@ -42,11 +43,7 @@ PEN = SetPen(down=True, color=(0xB3 / 255, 0xB8 / 255, 1.0), width_m=3 / PIXELS 
 """The pen of a new turtle. It draws a line to where the turtle is teleported, too."""
 
 SPEED_RAD_S = 1.0
-NEAR_RAD = 0.02
-"""A turn ends so near to the heading."""
-_TICK_S = 0.01
-_STUCK_NS = 2_000_000_000
-"""Simulated time without progress after which a turn is given up."""
+"""Of a turn to a heading."""
 
 
 def _pose(kind: Any, reading: PoseReading, _robot: ProfileRobot) -> Any:
@@ -135,41 +132,20 @@ def _teleport_by(request: Any, _response: Any, robot: ProfileRobot) -> None:
     robot.post(MoveRobot(pose.x_m + way_m * math.cos(yaw), pose.y_m + way_m * math.sin(yaw), yaw))
 
 
-class _Turn:
-    """A turn on the spot to a heading."""
+def _turn(goal: Any, robot: ProfileRobot) -> LawMotion:
+    """Turn on the spot to a heading by the shorter way, whatever velocities are commanded meanwhile."""
+    from thymio_sim_ros.ros.interface.command_checks import finite
 
-    def __init__(self, goal: Any, robot: ProfileRobot) -> None:
-        from thymio_sim_ros.ros.interface.command_checks import finite
-
-        finite(goal.theta, "theta")
-        self._robot, self._theta = robot, wrap_angle(goal.theta)
-        self._start = robot.pose.yaw_rad
-        self._best, self._best_ns = math.inf, robot.world.now_ns
-
-    @property
-    def _remaining(self) -> float:
-        return wrap_angle(self._theta - self._robot.pose.yaw_rad)
-
-    def step(self) -> Ended | None:
-        remaining, now_ns = self._remaining, self._robot.world.now_ns
-        if abs(remaining) < NEAR_RAD:
-            return Ended()
-        if abs(remaining) < self._best - NEAR_RAD / 2:
-            self._best, self._best_ns = abs(remaining), now_ns
-        if now_ns - self._best_ns > _STUCK_NS:
-            return Ended(f"something blocks the turn, {remaining:.2f} rad are left")
-        speed = math.copysign(min(SPEED_RAD_S, abs(remaining) / _TICK_S), remaining)
-        self._robot.post(BodyTwist(0.0, speed))
-        return None
-
-    def feedback(self, kind: type[Any]) -> Any:
-        return kind(remaining=self._remaining)
-
-    def result(self, kind: type[Any]) -> Any:
-        return kind(delta=wrap_angle(self._start - self._robot.pose.yaw_rad))
-
-    def stop(self) -> None:
-        self._robot.post(BodyTwist(0.0, 0.0))
+    finite(goal.theta, "theta")
+    start = robot.pose
+    return LawMotion(
+        robot,
+        Turn(start, wrap_angle(goal.theta - start.yaw_rad), SPEED_RAD_S),
+        lambda kind, law: kind(remaining=law.remaining.angle_rad),
+        result=lambda kind: kind(delta=wrap_angle(start.yaw_rad - robot.pose.yaw_rad)),
+        by_truth=True,
+        yields=False,
+    )
 
 
 def _begin(_robot: ProfileRobot) -> Sequence[Command]:
@@ -222,7 +198,7 @@ PROFILE = Profile(
         ServiceRow("teleport_absolute", "turtlesim/srv/TeleportAbsolute", _teleport, "move to a pose"),
         ServiceRow("teleport_relative", "turtlesim/srv/TeleportRelative", _teleport_by, "turn, then move ahead"),
     ),
-    actions=(ActionRow("rotate_absolute", "turtlesim/action/RotateAbsolute", _Turn, "turn to a heading in rad"),),
+    actions=(ActionRow("rotate_absolute", "turtlesim/action/RotateAbsolute", _turn, "turn to a heading in rad"),),
     node_parameters=tuple(
         ParameterRow(f"background_{part}", value, f"{color} of the field, 0…255", 0, 255, _paint)
         for part, color, value in zip("rgb", ("Red", "Green", "Blue"), BACKGROUND, strict=True)
