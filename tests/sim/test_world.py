@@ -30,6 +30,7 @@ from thymio_sim_ros.sim.commands import (
     Tilt,
 )
 from thymio_sim_ros.sim.model.geometry import LEVEL, Pose
+from thymio_sim_ros.sim.playground.placement import PlacementError
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.sensors import all_sensors
 from thymio_sim_ros.sim.world import StepResult, World
@@ -345,3 +346,20 @@ def test_the_scene_holds_the_primitives_of_the_playground() -> None:
     playground: Playground = shipped("obstacle")
     scene = World(playground).scene
     assert (scene.solids, scene.floors, scene.paints) == (playground.solids, playground.floors, playground.paints)
+
+
+def test_robots_that_are_not_solid_drive_through_each_other_and_stand_where_others_are() -> None:
+    wall = box(0.5, 0.0, 0.02, 0.4)
+    names = ({"name": "there", "x_m": 0.0, "y_m": 0.0}, {"name": "through", "x_m": -0.2, "y_m": 0.0})
+    world = World(make([FLOOR, wall], names), solid_robots=False, noise=False)
+    world.post("through", BodyTwist(0.1, 0.0))
+    steps = run(world, 5.0)
+    assert not any(step.contacts for step in steps)
+    assert world.robots["there"].pose == Pose(0.0, 0.0, 0.0)
+    assert world.robots["through"].pose.x_m == pytest.approx(0.3, abs=0.01)
+    run(world, 3.0)
+    assert world.robots["through"].pose.x_m < 0.45
+    world.spawn(RobotStart("beside", 0.02, 0.0))
+    world.post("beside", MoveRobot(0.0, 0.0, 1.0))
+    with pytest.raises(PlacementError, match="occupied"):
+        world.spawn(RobotStart("inside", 0.5, 0.0))

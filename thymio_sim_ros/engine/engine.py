@@ -75,13 +75,14 @@ class Engine:
         noise: bool = True,
         periods_ns: Mapping[str, int] | None = None,
         lidar: Lidar | None = None,
+        solid_robots: bool = True,
         shares_numbers: bool = False,
         ground: Ground | None = None,
     ) -> None:
         """Create the world and a device for each robot with a program: one program for all, or one by robot name.
 
         With a `behaviour`, such as "menu", every robot is switched on with that, and a program waits in its menu. A
-        `DeviceStart` in place of a program says all of one robot. `periods_ns`, `lidar`: see `World`.
+        `DeviceStart` in place of a program says all of one robot. `periods_ns`, `lidar`, `solid_robots`: see `World`.
         `shares_numbers`: see `RunStart`. A `ground` of the playground that exists already, from a run that has ended,
         need not be painted again. SdCardError, SettingsError: a folder of the options cannot be used.
         """
@@ -93,6 +94,7 @@ class Engine:
             proximity_model=proximity_model,
             periods_ns=periods_ns,
             lidar=lidar,
+            solid_robots=solid_robots,
             ground=ground,
         )
         starts = _device_starts(list(self.world.robots), programs, behaviour)
@@ -133,6 +135,7 @@ class Engine:
             shares_numbers=start.shares_numbers,
             periods_ns=None if world.periods_ns is None else dict(world.periods_ns),
             lidar=world.lidar,
+            solid_robots=world.solid_robots,
             ground=ground,
         )
 

@@ -51,7 +51,7 @@ _ON_EDGE_M = 1e-9
 class WorldOptions:
     """The options of a world besides its playground; `periods_ns` as pairs, None for the periods of the sensors.
 
-    `lidar`: that of each robot, None for robots without one.
+    `lidar`: that of each robot, None for robots without one. `solid_robots`: whether robots touch each other.
     """
 
     seed: int
@@ -60,6 +60,7 @@ class WorldOptions:
     motor_model: str
     periods_ns: tuple[tuple[str, int], ...] | None = None
     lidar: Lidar | None = None
+    solid_robots: bool = True
 
 
 class StepResult(NamedTuple):
@@ -83,6 +84,7 @@ class World:
         motor_model: str = MOTOR_MODELS[0],
         periods_ns: Mapping[str, int] | None = None,
         lidar: Lidar | None = None,
+        solid_robots: bool = True,
         ground: Ground | None = None,
     ) -> None:
         """Create the world at time 0.
@@ -96,6 +98,7 @@ class World:
             periods_ns: The sensors that measure, and their periods; None: all, with their own periods. A lidar
                 measures also if it is not among them.
             lidar: The lidar of each robot; None: they have none.
+            solid_robots: Whether robots push each other; otherwise they drive through each other.
             ground: The ground of the playground if it exists already; the world owns it from now on.
 
         Raises:
@@ -110,7 +113,7 @@ class World:
         self.playground = playground
         self.scene = Scene.of(playground)
         periods = None if periods_ns is None else tuple(periods_ns.items())
-        self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods, lidar)
+        self.options = WorldOptions(seed, noise, proximity_model, motor_model, periods, lidar, solid_robots)
         self.robot_changes = 0
         """Number of robots added and removed so far."""
         self._ground = Ground(playground.floors, playground.paints) if ground is None else ground
@@ -128,7 +131,13 @@ class World:
         self._ground.paint(None)
         self.painted: Color | None = None
         """The color that the first floor has got, None if it has its own."""
-        self._physics = Physics(self.playground.solids, self.playground.triggers, len(self.playground.robots))
+        playground = self.playground
+        self._physics = Physics(
+            playground.solids,
+            playground.triggers,
+            len(playground.robots),
+            solid_robots=self.options.solid_robots,
+        )
         self._movables = self._physics.movables
         self._robots: dict[str, Robot] = {}
         self._shared = SharedState(
@@ -322,7 +331,9 @@ class World:
         standing += [
             footprint_of_robot(robot.name, soon.get(robot.name, robot.pose))
             for robot in self._robots.values()
-            if not self._will_be_lifted(robot) and (robot.name in soon or robot.is_standing)
+            if (self.options.solid_robots or wanted.name in self._movables)
+            and not self._will_be_lifted(robot)
+            and (robot.name in soon or robot.is_standing)
         ]
         here = (there.name for there in standing if there.name != wanted.name and there.overlaps(wanted))
         blocker = self._fixed.blocker(wanted) or next(here, None)

@@ -133,7 +133,10 @@ def test_spawn_chooses_a_name_and_a_turtle_has_its_own_topics(ros, sim, call):
         ({"x": math.nan, "y": 1.0}, "/spawn rejected: x is nan, expected a finite number"),
         ({"x": 1.0, "y": 1.0, "name": "turtle1"}, "/spawn rejected: the name 'turtle1' is taken"),
         ({"x": 40.0, "y": 1.0}, "there is no ground"),
-        ({"x": 1.0, "y": 1.0, "name": "my turtle"}, "/spawn rejected: name"),
+        ({"x": 1.0, "y": 1.0, "theta": math.inf}, "/spawn rejected: theta is inf, expected a finite number"),
+        ({"x": 1.0, "y": 1.0, "name": "my turtle"}, "/spawn rejected: name: found 'my turtle', expected a ROS name"),
+        ({"x": 1.0, "y": 1.0, "name": "törtchen"}, "/spawn rejected: name: found 'törtchen', expected a ROS name"),
+        ({"x": 1.0, "y": 1.0, "name": "/a/b"}, "/spawn rejected: name: found '/a/b', expected a ROS name"),
     ],
 )
 def test_a_turtle_that_cannot_be_is_refused_with_the_reason(ros, sim, call, fields, reason):
@@ -141,6 +144,16 @@ def test_a_turtle_that_cannot_be_is_refused_with_the_reason(ros, sim, call, fiel
     assert call(srv.Spawn, "/spawn", **fields).name == ""
     sim.until(lambda: any(reason in line.msg for line in logged))
     assert list(sim.world.robots) == ["turtle1"]
+
+
+def test_turtles_drive_through_each_other_as_games_of_catching_need_it(ros, sim, call):
+    call(srv.Spawn, "/spawn", x=MIDDLE + 2.0, y=MIDDLE, theta=1.0, name="prey")
+    call(srv.Spawn, "/spawn", x=MIDDLE + 2.2, y=MIDDLE, theta=0.0, name="beside")
+    assert list(sim.world.robots) == ["turtle1", "prey", "beside"]
+    ros.publisher(Twist, "/turtle1/cmd_vel").publish(drive(2.0))
+    sim.step(1.5)
+    assert pose_of(sim)[0] == pytest.approx(MIDDLE + 2.0, abs=0.1)
+    assert pose_of(sim, "prey") == pytest.approx((MIDDLE + 2.0, MIDDLE, 1.0), abs=1e-6)
 
 
 def test_kill_and_reset(ros, sim, call, runtime):
@@ -190,10 +203,29 @@ def test_the_pen_has_color_and_width_and_can_be_off(sim, call):
     assert sim.world.color_at(8.0 * UNIT_M, 8.0 * UNIT_M) == pytest.approx((69 / 255, 86 / 255, 1.0))
 
 
-def test_a_teleport_with_nan_changes_nothing(ros, sim, call):
+@pytest.mark.parametrize(
+    ("word", "fields", "reason"),
+    [
+        ("absolute", {"x": math.nan, "y": 1.0}, "x is nan, expected a finite number"),
+        ("absolute", {"x": 40.0, "y": 1.0}, "there is no ground; the nearest is 'field'"),
+        ("relative", {"linear": -math.inf}, "linear is -inf, expected a finite number"),
+        ("relative", {"linear": 1000.0}, "there is no ground; the nearest is 'field'"),
+    ],
+)
+def test_a_teleport_that_cannot_be_changes_nothing(ros, sim, call, word, fields, reason):
     logged = ros.collect(Log, "/rosout")
-    call(srv.TeleportAbsolute, "/turtle1/teleport_absolute", x=math.nan, y=1.0, theta=0.0)
-    sim.until(lambda: any("x is nan, expected a finite number" in line.msg for line in logged))
+    call(getattr(srv, f"Teleport{word.title()}"), f"/turtle1/teleport_{word}", **fields)
+    rejected = f"/turtle1/teleport_{word} rejected: "
+    sim.until(lambda: any(rejected in line.msg and reason in line.msg for line in logged))
+    assert pose_of(sim) == pytest.approx((MIDDLE, MIDDLE, 0.0), abs=0.01)
+
+
+@pytest.mark.parametrize(("linear", "angular"), [(math.nan, 0.0), (1.0, math.inf)])
+def test_a_velocity_that_is_no_number_is_rejected(ros, sim, linear, angular):
+    logged = ros.collect(Log, "/rosout")
+    ros.publisher(Twist, "/turtle1/cmd_vel").publish(drive(linear, angular))
+    sim.until(lambda: any("/turtle1/cmd_vel rejected: " in line.msg for line in logged))
+    sim.step(0.2)
     assert pose_of(sim) == pytest.approx((MIDDLE, MIDDLE, 0.0), abs=0.01)
 
 

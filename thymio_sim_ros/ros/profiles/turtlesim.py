@@ -174,7 +174,7 @@ PROFILE = Profile(
     playground="turtlesim",
     program="none",
     robots=("turtle1",),
-    parameters={"cmd_vel_timeout": 1.0, "odom_max_rate": 50.0},
+    parameters={"cmd_vel_timeout": 1.0, "odom_max_rate": 50.0, "solid_robots": False},
     replaces=frozenset({"cmd_vel"}),
     topics=(
         TopicRow("pose", "turtlesim/msg/Pose", "pose", _pose, "x, y and speed in units of 4 cm, theta in rad"),

@@ -116,6 +116,9 @@ class SimulatorParams:
         PROXIMITY_MODELS[0], "Proximity sensor model, see docs/robot.md", fixed=True, choices=PROXIMITY_MODELS
     )
     lidar: LidarParams = group(LidarParams(), "lidar")
+    solid_robots: bool = param(
+        True, "Whether robots push each other; otherwise they drive through each other", fixed=True
+    )
     real_time_factor: float = param(1.0, "Simulated seconds per second; 0 is as fast as possible", low=0.0, high=1000.0)
     start_paused: bool = param(False, "Whether the world starts paused, until ~/pause or ~/step", fixed=True)
     step_ticks: int = param(1, "Ticks of 10 ms per ~/step", low=1, high=100_000)

@@ -51,5 +51,6 @@ def new_engine(playground: Playground, chosen: SimulatorParams, ground: Ground |
         motor_model=chosen.motor_model,
         periods_ns=chosen.periods_ns,
         lidar=chosen.lidar.lidar,
+        solid_robots=chosen.solid_robots,
         ground=ground,
     )

@@ -33,7 +33,9 @@ class RobotBodies:
     are replaced when more robots come than there is room for.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: int, obstacles: int, robots: int) -> None:
+    def __init__(
+        self, space: pymunk.Space, bodies: int, obstacles: int, robots: int, *, are_solid: bool = True
+    ) -> None:
         """Allocate the memory.
 
         Args:
@@ -41,8 +43,10 @@ class RobotBodies:
             bodies: number of other bodies that may be in the space.
             obstacles: number of obstacles, fixed and movable.
             robots: number of robots that will be added at once.
+            are_solid: whether robots touch each other.
         """
         self._space, self._others, self._obstacles = space, bodies, obstacles
+        self._are_solid = are_solid
         self._robots: list[RobotBody] = []
         self.reader = BodyReader(space)
         """All bodies of the space as they were read last."""
@@ -62,7 +66,7 @@ class RobotBodies:
             self.state.copy_from(before[0])
             self.wheels.copy_from(before[1])
             self._attach()
-        robot = RobotBody(name, pose, self._held)
+        robot = RobotBody(name, pose, self._held, is_solid=self._are_solid)
         robot.attach(self.state.view, self.wheels.view, len(self._robots))
         self._robots.append(robot)
         self._space.add(robot.body, robot.shape)

@@ -18,6 +18,8 @@ __all__ = ["ROBOT_TYPE", "RobotBody"]
 
 ROBOT_TYPE = 1
 """pymunk's collision type of robots."""
+_PASSING = pymunk.ShapeFilter(group=1)
+"""Shapes of one group do not touch each other."""
 _AT_REST_M_S = 1e-6
 _HULL = robot_constants.hull()
 
@@ -39,8 +41,11 @@ class RobotBody:
         "wheels",
     )
 
-    def __init__(self, name: str, pose: Pose, held: dict[RobotBody, None]) -> None:
-        """`held`: where it adds itself when a contact begins or ends. It is placed once it has been attached."""
+    def __init__(self, name: str, pose: Pose, held: dict[RobotBody, None], *, is_solid: bool = True) -> None:
+        """`held`: where it adds itself when a contact begins or ends. It is placed once it has been attached.
+
+        `is_solid`: whether it touches other robots.
+        """
         self._held = held
         self.name = name
         self.touching: dict[pymunk.Shape, Contact] = {}
@@ -56,6 +61,8 @@ class RobotBody:
         self.shape = pymunk.Poly(self.body, _HULL)
         self.shape.collision_type = ROBOT_TYPE
         self.shape.elasticity = ROBOT_BOUNCE
+        if not is_solid:
+            self.shape.filter = _PASSING
 
     def attach(self, state: RobotState, wheels: WheelState, index: int) -> None:
         """Use an element of the views of these records from now on."""

@@ -40,8 +40,18 @@ _DROWSY_S = 0.1
 class Physics:
     """The bodies of a world. Invariant: only `step` and the placing methods move them."""
 
-    def __init__(self, solids: Iterable[Solid], triggers: Iterable[Trigger] = (), robots: int = 1) -> None:
-        """Create the space; `robots` is the number of robots that will be added at once."""
+    def __init__(
+        self,
+        solids: Iterable[Solid],
+        triggers: Iterable[Trigger] = (),
+        robots: int = 1,
+        *,
+        solid_robots: bool = True,
+    ) -> None:
+        """Create the space; `robots` is the number of robots that will be added at once.
+
+        `solid_robots`: whether robots touch each other.
+        """
         self._space = pymunk.Space()
         self._space.collision_slop = _SLOP_M
         self._space.iterations = _ITERATIONS
@@ -69,7 +79,7 @@ class Physics:
         self._fixed_grid: SpatialGrid[Obstacle] = SpatialGrid()
         for obstacle in self.fixed:
             self._fixed_grid.add(obstacle, obstacle.bounds)
-        self.robots = RobotBodies(self._space, len(self._numbers), len(solids), robots)
+        self.robots = RobotBodies(self._space, len(self._numbers), len(solids), robots, are_solid=solid_robots)
         self._was_still = False
         self._standing: list[MovableBody] = []
         """Objects that have not fallen."""
