@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import yaml
 from geometry_msgs.msg import Twist, TwistStamped
-from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.action import ActionServer, GoalResponse
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -194,6 +194,29 @@ def test_parameters_are_listed_read_set_and_dumped(run, talker):
     assert run("param", "get", "/lab/talker", "group.names") == "String values are: ['a', 'b']\n"
     dumped = yaml.safe_load(run("param", "dump", "/lab/talker"))["/lab/talker"]["ros__parameters"]
     assert (dumped["speed"], dumped["group"]) == (2.5, {"names": ["a", "b"]})
+
+
+def test_parameters_are_described_with_type_text_and_limits(run, make_node):
+    node = make_node("sized")
+    limits = IntegerRange(from_value=0, to_value=255, step=5)
+    described = ParameterDescriptor(description="Red of the light", integer_range=[limits], read_only=True)
+    node.declare_parameter("red", 10, described)
+    node.declare_parameter("word", "world")
+    assert run("param", "describe", "/sized", "red", "word") == (
+        "Parameter name: red\n"
+        "  Type: integer\n"
+        "  Description: Red of the light\n"
+        "  Constraints:\n"
+        "    Read only: true\n"
+        "    Min value: 0\n"
+        "    Max value: 255\n"
+        "    Step: 5\n"
+        "Parameter name: word\n"
+        "  Type: string\n"
+        "  Constraints:\n"
+    )
+    with pytest.raises(CommandError, match="found no parameter wrd of /sized: `param list /sized` prints"):
+        run("param", "describe", "/sized", "word", "wrd")
 
 
 def test_a_node_without_parameters_is_named(run, make_node):

@@ -91,6 +91,10 @@ def _param() -> Iterator[tuple[str, str, Add]]:
         parser.add_argument("node")
         parser.add_argument("parameter")
 
+    def describe(parser: argparse.ArgumentParser) -> None:
+        parser.add_argument("node")
+        parser.add_argument("parameters", nargs="+", metavar="parameter")
+
     def assign(parser: argparse.ArgumentParser) -> None:
         get(parser)
         parser.add_argument("value", help="in YAML: 2.0 is a double, 2 an integer, true a boolean")
@@ -102,6 +106,7 @@ def _param() -> Iterator[tuple[str, str, Add]]:
     yield "list", "List parameters", of_node
     yield "get", "Print the value of a parameter", get
     yield "set", "Set a parameter", assign
+    yield "describe", "Print type, description and limits of parameters", describe
     yield "dump", "Print all parameters of a node as a file of parameters", lambda parser: _name(parser, "node")
     yield "load", "Set the parameters of a node from a file", load
 

@@ -37,6 +37,19 @@ _LABELS = {
 }
 
 
+_TYPES = {
+    ParameterType.PARAMETER_BOOL: "boolean",
+    ParameterType.PARAMETER_INTEGER: "integer",
+    ParameterType.PARAMETER_DOUBLE: "double",
+    ParameterType.PARAMETER_STRING: "string",
+    ParameterType.PARAMETER_BYTE_ARRAY: "byte array",
+    ParameterType.PARAMETER_BOOL_ARRAY: "boolean array",
+    ParameterType.PARAMETER_INTEGER_ARRAY: "integer array",
+    ParameterType.PARAMETER_DOUBLE_ARRAY: "double array",
+    ParameterType.PARAMETER_STRING_ARRAY: "string array",
+}
+
+
 def _list(member: Member, options: argparse.Namespace) -> None:
     if options.node is not None:
         full, client = _client(member, options.node)
@@ -56,9 +69,7 @@ def _get(member: Member, options: argparse.Namespace) -> None:
     full, client = _client(member, options.node)
     (value,) = _values(member, full, client, [options.parameter])
     if value.type not in _LABELS:
-        raise CommandError(
-            f"found no parameter {options.parameter} of {full}: `param list {full}` prints its parameters"
-        )
+        raise _unknown(options.parameter, full)
     print(_LABELS[value.type], _python(value))
 
 
@@ -71,6 +82,31 @@ def _set(member: Member, options: argparse.Namespace) -> None:
     if not result.successful:
         raise CommandError(f"Setting parameter failed{reason}")
     print(f"Set parameter successful{reason}")
+
+
+def _describe(member: Member, options: argparse.Namespace) -> None:
+    full, client = _client(member, options.node)
+    names = _names(member, full, client)
+    for name in options.parameters:
+        if name not in names:
+            raise _unknown(name, full)
+    for found in member.answer(client.describe_parameters(options.parameters), full).descriptors:
+        print(f"Parameter name: {found.name}\n  Type: {_TYPES.get(found.type, 'not set')}")
+        if found.description:
+            print(f"  Description: {found.description}")
+        print("  Constraints:")
+        if found.read_only:
+            print("    Read only: true")
+        for limits in (*found.floating_point_range, *found.integer_range):
+            print(f"    Min value: {limits.from_value}\n    Max value: {limits.to_value}")
+            if limits.step:
+                print(f"    Step: {limits.step}")
+        if found.additional_constraints:
+            print(f"    Additional constraints: {found.additional_constraints}")
+
+
+def _unknown(name: str, full: str) -> CommandError:
+    return CommandError(f"found no parameter {name} of {full}: `param list {full}` prints its parameters")
 
 
 def _dump(member: Member, options: argparse.Namespace) -> None:
@@ -146,6 +182,7 @@ VERBS: Mapping[str, Callable[[Member, argparse.Namespace], None]] = {
     "list": _list,
     "get": _get,
     "set": _set,
+    "describe": _describe,
     "dump": _dump,
     "load": _load,
 }
