@@ -146,6 +146,11 @@ def test_a_turtle_that_cannot_be_is_refused_with_the_reason(ros, sim, call, fiel
     assert list(sim.world.robots) == ["turtle1"]
 
 
+def test_a_turtle_may_be_spawned_with_any_angle(sim, call):
+    assert call(srv.Spawn, "/spawn", x=2.0, y=2.0, theta=6.3 + 2 * math.pi, name="dizzy").name == "dizzy"
+    assert pose_of(sim, "dizzy")[2] == pytest.approx(6.3 - 2 * math.pi, abs=1e-5)
+
+
 def test_turtles_drive_through_each_other_as_games_of_catching_need_it(ros, sim, call):
     call(srv.Spawn, "/spawn", x=MIDDLE + 2.0, y=MIDDLE, theta=1.0, name="prey")
     call(srv.Spawn, "/spawn", x=MIDDLE + 2.2, y=MIDDLE, theta=0.0, name="beside")

@@ -95,7 +95,7 @@ def _spawn(request: Any, response: Any, world: ProfileWorld) -> None:
     name = request.name or next(
         name for number in range(1, len(world.robots) + 2) if (name := f"turtle{number}") not in world.robots
     )
-    world.spawn(RobotStart(name, request.x * UNIT_M, request.y * UNIT_M, request.theta))
+    world.spawn(RobotStart(name, request.x * UNIT_M, request.y * UNIT_M, wrap_angle(request.theta)))
     response.name = name
 
 
