@@ -9,9 +9,10 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec, PathFinder
+from importlib.machinery import ModuleSpec
+from pathlib import Path
 from types import ModuleType
 
 from thymio_sim_ros.errors import ThymioSimError
@@ -77,7 +78,7 @@ class _Finder(MetaPathFinder):
 
         if top in PACKAGES and rest in ("", *FORMS):
             return _messages_spec(fullname)
-        if rest in FORMS and is_package(top) and not _is_regular(PathFinder.find_spec(fullname, path)):
+        if rest in FORMS and is_package(top) and not _is_regular(rest, path or ()):
             return _messages_spec(fullname)
         return None
 
@@ -98,9 +99,13 @@ def _messages_spec(fullname: str) -> ModuleSpec:
     return ModuleSpec(fullname, _MessagesLoader(), origin=__file__, is_package="." not in fullname)
 
 
-def _is_regular(spec: ModuleSpec | None) -> bool:
-    """Whether a module has a file; a folder without `__init__.py` is importable, too."""
-    return spec is not None and spec.origin is not None
+def _is_regular(name: str, folders: Iterable[str]) -> bool:
+    """Whether a module of folders has a file; a folder without `__init__.py` is importable, too.
+
+    PathFinder would need the package of the module to be imported already.
+    """
+    files = (Path(folder, file) for folder in folders for file in (f"{name}.py", f"{name}/__init__.py"))
+    return any(file.is_file() for file in files)
 
 
 def install(*, is_forced: bool = False) -> bool:

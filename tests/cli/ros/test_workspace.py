@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 
 from thymio_sim_ros.cli.ros import console_scripts
-from thymio_sim_ros.cli.ros.workspace import Program, packages, programs
+from thymio_sim_ros.cli.ros.workspace import Program, add_to_path, packages, programs
+from thymio_sim_ros.ros.foxglove.types import load_type
 
 SETUP = """\
 from setuptools import setup
 
 print("a line of setup.py")
-setup(name="lesson", packages=["lesson"], entry_points={"console_scripts": %s})
+setup(name="lesson", packages=["lesson"], tests_require=["pytest"], entry_points={"console_scripts": %s})
 """
 
 
@@ -81,7 +82,9 @@ def test_console_scripts_are_those_of_setup_py(
     assert printed.out == (
         '[{"scripts": [["talker", "lesson.talker:main"], ["listener", "lesson.listener:Listener.main"]]}]'
     )
-    assert printed.err == "a line of setup.py\n"
+    assert printed.err == "a line of setup.py\n", (
+        "a warning about `tests_require`, which `ros2 pkg create` writes, is none"
+    )
 
 
 @pytest.mark.process
@@ -110,3 +113,16 @@ def test_programs_in_python_that_cmake_installs_are_programs(tmp_path: Path) -> 
     found, errors = programs(packages(tmp_path))
     assert (found, errors) == ({"mixed": [Program("slow.py", file=folder / "nodes" / "slow.py")]}, {})
     assert packages(tmp_path)[0].has_compiled_programs
+
+
+def test_a_command_finds_the_types_of_its_workspace(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    messages = make_package(workspace / "src" / "course" / "week_2" / "tower_messages") / "msg"
+    messages.mkdir()
+    (messages / "Height.msg").write_text("float64 meters\n", encoding="utf-8")
+    monkeypatch.setattr("sys.path", [*sys.path])
+    monkeypatch.chdir(workspace / "src" / "lesson")
+    add_to_path()
+    assert load_type("tower_messages/msg/Height")(meters=1.5).meters == 1.5
+    before = list(sys.path)
+    add_to_path()
+    assert sys.path == before

@@ -56,6 +56,7 @@ OPERATIONS: Mapping[str, OperationKind] = {
     "node": OperationKind(("id", "name"), _PUBLISH, True),
     "remove_node": OperationKind(("id",), _PUBLISH, True),
     "graph": OperationKind(),
+    "interfaces": OperationKind(("package", "texts"), _PUBLISH, True),
 }
 
 _TEXT, _FLAG, _OBJECT = "a text", "true or false", "an object"
@@ -65,12 +66,15 @@ _CHOICES = {
     "level": ("info", "warning", "error", "none"),
 }
 _KINDS = {
-    **dict.fromkeys(("topic", "type", "service", "action", "action_type", "node", "name", "namespace"), _TEXT),
+    **dict.fromkeys(
+        ("topic", "type", "service", "action", "action_type", "node", "name", "namespace", "package"), _TEXT
+    ),
     **dict.fromkeys(("data", "compression", "level"), _TEXT),
     **dict.fromkeys(("queue_length", "queue_size", "fragment_size", "num", "total", "status"), _COUNT),
     **dict.fromkeys(("throttle_rate", "timeout"), _NUMBER),
     **dict.fromkeys(("latch", "feedback", "result"), _FLAG),
     "qos": _OBJECT,
+    "texts": _OBJECT,
     "id": "a text or an integer",
 }
 _NAMES = frozenset(_KINDS) - {"data"}

@@ -11,6 +11,7 @@ import contextlib
 import json
 import os
 import sys
+import warnings
 from collections.abc import Iterable, Mapping
 from importlib import import_module
 from typing import Any
@@ -23,6 +24,7 @@ _GROUP = "console_scripts"
 
 def main(folders: Iterable[str]) -> None:
     """Print the answer about these folders; what a `setup.py` prints goes to stderr."""
+    warnings.filterwarnings("ignore", "Unknown distribution option")  # `tests_require`, as `ros2 pkg create` writes it
     with contextlib.redirect_stdout(sys.stderr):
         answers = [_answer(folder) for folder in folders]
     json.dump(answers, sys.stdout)

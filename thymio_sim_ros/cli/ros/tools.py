@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from thymio_sim_ros.bags.arguments import add_play_arguments, add_record_arguments
 from thymio_sim_ros.cli.ros.membership import add_membership_options, interruptible, membership
+from thymio_sim_ros.cli.ros.workspace import add_to_path
 from thymio_sim_ros.ros_commands.arguments import NOUNS, add_verbs
 
 __all__ = ["parser_of", "run"]
@@ -29,6 +30,7 @@ def run(argv: Sequence[str]) -> int:
     """Run a command, the first word, on the graph; return the exit code. Raises UsageError."""
     end = argv.index(_ROS_ARGS) if _ROS_ARGS in argv else len(argv)
     options = parser_of(argv[0]).parse_args(argv[:end])
+    add_to_path()
     with interruptible(), membership(options, options.command, waits=options.command in _BAGS) as member:
         if options.command in _BAGS:
             from thymio_sim_ros.bags import commands as bags

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from thymio_sim_ros.portable_ros.source_packages import MANIFEST, declared_name
 
-__all__ = ["Program", "SourcePackage", "packages", "programs"]
+__all__ = ["Program", "SourcePackage", "add_to_path", "packages", "programs"]
 
 _SRC = "src"
 _SETUP = "setup.py"
@@ -67,6 +67,15 @@ def packages(folder: Path) -> list[SourcePackage]:
         if name := declared_name(one):
             by_name.setdefault(name, one)
     return [SourcePackage(name, by_name[name]) for name in sorted(by_name)]
+
+
+def add_to_path() -> None:
+    """Let this process find the types of the packages around the current folder, as after `source install/setup.bash`.
+
+    Packages of messages are found in the folders from which Python imports (`portable_ros/source_packages.py`).
+    """
+    folders = dict.fromkeys(str(one.folder.parent) for one in packages(Path.cwd()))
+    sys.path.extend(folder for folder in folders if folder not in sys.path)
 
 
 def _is_workspace(folder: Path) -> bool:

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from importlib import resources
 
 from thymio_sim_ros.portable_ros.messages.definition_text import DefinitionError, Section
-from thymio_sim_ros.portable_ros.messages.own_packages import FORMS, own_folder, read
+from thymio_sim_ros.portable_ros.messages.own_packages import FORMS, TAUGHT, own_folder, read
 
 __all__ = [
     "ACTION_PARTS",
@@ -57,8 +57,8 @@ SEPARATOR = "---"
 
 
 def is_package(name: str) -> bool:
-    """Whether there are interfaces of a package: here, or in a folder of the user."""
-    return name in PACKAGES or own_folder(name) is not None
+    """Whether there are interfaces of a package: here, in a folder of the user, or sent by another program."""
+    return name in PACKAGES or name in TAUGHT or own_folder(name) is not None
 
 
 @functools.cache
@@ -68,10 +68,8 @@ def interfaces(package: str) -> Mapping[str, str]:
     Those of a folder of the user are read once. Raises DefinitionError for a file that is no text or has a wrong name.
     """
     if package not in PACKAGES:
-        folder = own_folder(package)
-        if folder is None:
-            raise KeyError(package)
-        return read(folder)
+        folder = None if package in TAUGHT else own_folder(package)
+        return TAUGHT[package] if folder is None else read(folder)
     content = _FOLDER.joinpath(f"{package}{_SUFFIX}").read_text(encoding="utf-8")
     _, *parts = re.split(r"^=== (.+)$", content, flags=re.MULTILINE)
     return {name: text.lstrip("\n") for name, text in zip(parts[::2], parts[1::2], strict=True)}

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
 from thymio_sim_ros.portable_ros.messages.definition_text import DefinitionError
 from thymio_sim_ros.portable_ros.source_packages import installed_folder, source_folders
 
-__all__ = ["FORMS", "own_folder", "read"]
+__all__ = ["FORMS", "TAUGHT", "check_names", "own_folder", "read"]
 
 FORMS = ("msg", "srv", "action")
+TAUGHT: dict[str, Mapping[str, str]] = {}
+"""The texts of packages without a folder here; `taught_packages.py` adds them."""
 _PACKAGE_NAME = re.compile(r"(?!.*__)(?!.*_$)[a-z][a-z0-9_]*")
 _NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 
@@ -40,6 +42,16 @@ def _found(package: str) -> Path:
 
 def _has_definitions(folder: Path) -> bool:
     return any(next((folder / form).glob(f"*.{form}"), None) is not None for form in FORMS)
+
+
+def check_names(package: str, names: Iterable[str]) -> None:
+    """Raise DefinitionError unless a package and `msg/Name`, `srv/Name` or `action/Name` are names of interfaces."""
+    if not _PACKAGE_NAME.fullmatch(package):
+        raise DefinitionError(f"found the package {package!r:.80}, expected lower case letters, digits and underscores")
+    for name in names:
+        form, _, short = name.partition("/")
+        if form not in FORMS or not _NAME.fullmatch(short):
+            raise DefinitionError(f"{package}: found the name {name!r:.80}, expected one such as msg/Num")
 
 
 def read(folder: Path) -> Mapping[str, str]:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from thymio_sim_ros.portable_ros.graph.graph import Graph
 from thymio_sim_ros.portable_ros.graph.protocols import GraphNode
 from thymio_sim_ros.portable_ros.graph.remote_ends import Kind
+from thymio_sim_ros.portable_ros.messages.taught_packages import definitions_for
 from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy
 from thymio_sim_ros.portable_ros.rosbridge.operations import Operation, qos_of
 
@@ -40,9 +41,11 @@ class Announcements:
         """Nodes with their ids, by identity; they are kept, so that no other object gets the same identity."""
         self._ends: dict[int, tuple[LocalEndpoint, str]] = {}
         self._by_id: dict[str, LocalEndpoint] = {}
+        self._packages: set[str] = set()
+        """Packages of this program whose definitions the server has."""
 
     def added(self) -> Iterator[tuple[Operation, LocalEndpoint | None]]:
-        """The operations for new nodes and endpoints, each with its endpoint."""
+        """The operations for new nodes and endpoints, each with its endpoint, and before it the types that it needs."""
         nodes, ends = self._present()
         for key, node in nodes.items():
             if key not in self._nodes:
@@ -55,6 +58,9 @@ class Announcements:
                 wire_id = f"{endpoint.kind.value}{next(self._numbers)}"
                 self._ends[key] = (endpoint, wire_id)
                 self._by_id[wire_id] = endpoint
+                if self._is_extended:
+                    for package, texts in definitions_for(endpoint.type_name.partition("/")[0], self._packages):
+                        yield {"op": "interfaces", "package": package, "texts": dict(texts)}, None
                 yield self._announcement(endpoint, wire_id), endpoint
 
     def removed(self) -> Iterator[Operation]:

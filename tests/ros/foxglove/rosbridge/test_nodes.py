@@ -6,6 +6,7 @@ import pytest
 from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 
+from tests import ros_graph
 from tests.bridge.ros_client import RosClient
 from thymio_sim_ros.ros.foxglove.rosbridge import session
 from thymio_sim_ros.ros.interface.qos import TRANSIENT_LOCAL
@@ -77,6 +78,25 @@ def test_a_node_hears_itself_and_other_clients(ros, bridge):
         for client in (one, other):
             found = client.next("publish")
             assert (found["id"], found["msg"]["bytes"]) == ("s", payload)
+
+
+@pytest.mark.skipif(not ros_graph.IS_EMBEDDED, reason="types of an installed ROS need a build")
+def test_nodes_of_clients_share_types_that_the_server_does_not_have(ros, bridge):
+    texts = {"msg/Spot": "float64 x\nfloat64 y\n"}
+    port = bridge().port
+    with RosClient(port, ros.until) as one, RosClient(port, ros.until) as other:
+        for client in (one, other):
+            client.send("interfaces", package="rosbridge_taught", texts=texts)
+        other.send("subscribe", topic="/spot", type="rosbridge_taught/msg/Spot")
+        one.send("advertise", topic="/spot", type="rosbridge_taught/msg/Spot")
+        one.send("publish", topic="/spot", msg={"x": 1.5})
+        assert other.next("publish")["msg"] == {"x": 1.5, "y": 0.0}
+        for wrong, reason in (
+            ({"msg/Spot": "int8 x\n"}, "found another definition"),
+            ({"msg/Spot": 3}, "expected texts"),
+        ):
+            one.send("interfaces", package="rosbridge_taught", texts=wrong)
+            assert reason in one.next("status")["msg"]
 
 
 def test_a_client_follows_the_graph_without_its_own_nodes(ros, my_node):

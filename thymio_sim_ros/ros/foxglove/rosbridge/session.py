@@ -13,6 +13,8 @@ from thymio_sim_ros.bridge.rosbridge.fragments import Fragments
 from thymio_sim_ros.bridge.rosbridge.frames import Operation
 from thymio_sim_ros.bridge.rosbridge.operations import OPERATIONS, check
 from thymio_sim_ros.bridge.switchboard.switchboard import READ_ONLY
+from thymio_sim_ros.portable_ros import import_hook
+from thymio_sim_ros.portable_ros.messages.definition_text import DefinitionError
 from thymio_sim_ros.ros.foxglove.rosbridge import rosapi
 from thymio_sim_ros.ros.foxglove.rosbridge.client_node import ClientNode
 from thymio_sim_ros.ros.foxglove.rosbridge.client_services import ClientServices
@@ -74,6 +76,7 @@ class Session:
             "node": self._add_node,
             "remove_node": self._remove_node,
             "graph": self._follow_graph,
+            "interfaces": _learn,
         }
         assert self._handlers.keys() == OPERATIONS.keys()
 
@@ -187,3 +190,18 @@ class Session:
         self._services.close()
         for place in self._places.values():
             place.destroy()
+
+
+def _learn(operation: Operation) -> None:
+    """Learn the types of a client; those of an installed ROS need a build. Raises RefusedError."""
+    if not import_hook.is_served("rclpy"):
+        return
+    from thymio_sim_ros.portable_ros.messages.taught_packages import teach
+
+    package, texts = operation["package"], operation["texts"]
+    if not all(isinstance(text, str) for text in texts.values()):
+        raise RefusedError("interfaces.texts: expected texts by names such as msg/Num")
+    try:
+        teach(package, texts)
+    except DefinitionError as error:
+        raise RefusedError(f"interfaces: {error}") from error
