@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from tests import ros_graph
 from thymio_sim_ros.cli.ros import console_scripts
 from thymio_sim_ros.cli.ros.workspace import Program, add_to_path, packages, programs
-from thymio_sim_ros.ros.foxglove.types import load_type
+from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 
 SETUP = """\
 from setuptools import setup
@@ -122,7 +123,11 @@ def test_a_command_finds_the_types_of_its_workspace(workspace: Path, monkeypatch
     monkeypatch.setattr("sys.path", [*sys.path])
     monkeypatch.chdir(workspace / "src" / "lesson")
     add_to_path()
-    assert load_type("tower_messages/msg/Height")(meters=1.5).meters == 1.5
+    if ros_graph.IS_EMBEDDED:
+        assert load_type("tower_messages/msg/Height")(meters=1.5).meters == 1.5
+    else:
+        with pytest.raises(MissingTypeError, match="there is no package tower_messages with msg types"):
+            load_type("tower_messages/msg/Height")
     before = list(sys.path)
     add_to_path()
     assert sys.path == before

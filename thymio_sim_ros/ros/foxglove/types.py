@@ -81,4 +81,7 @@ def _has_interfaces(package: str, kind: str) -> bool:
     if spec is None or spec.submodule_search_locations is None:
         return False
     found = (finder.find_spec(f"{package}.{kind}", spec.submodule_search_locations) for finder in sys.meta_path)
-    return any(module is not None and module.origin is not None for module in found)  # a bare folder has none
+    try:
+        return any(module is not None and module.origin is not None for module in found)  # a bare folder has none
+    except KeyError:  # folders in a bare folder: Python looks for the package, which is not imported
+        return False
