@@ -7,9 +7,15 @@ from typing import Any
 
 import pytest
 
-from tests.patience import PATIENCE_S
+from tests.patience import PATIENCE_S, until
+from thymio_sim_ros.portable_ros import ros_types
+from thymio_sim_ros.portable_ros.rclpy.callback_groups import ReentrantCallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.exceptions import ROSInterruptException
-from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor, TimeoutException
+from thymio_sim_ros.portable_ros.rclpy.executors import (
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+    TimeoutException,
+)
 from thymio_sim_ros.portable_ros.rclpy.experimental.events_executor import EventsExecutor
 from thymio_sim_ros.portable_ros.rclpy.node import Node
 from thymio_sim_ros.portable_ros.rclpy.task import Future
@@ -134,3 +140,24 @@ def test_an_object_that_stands_for_a_node_is_executed(node: Node) -> None:
     assert called == ["rung"]
     executor.remove_node(StandIn(node))
     assert executor.get_nodes() == []
+
+
+def test_messages_wait_in_their_subscription_while_all_threads_are_busy(node: Node) -> None:
+    received: list[int] = []
+    is_released = threading.Event()
+
+    def take(message: Any) -> None:
+        received.append(message.level)
+        is_released.wait(PATIENCE_S)
+
+    publisher = node.create_publisher(ros_types.Log, "busy", 1)
+    node.create_subscription(ros_types.Log, "busy", take, 1, callback_group=ReentrantCallbackGroup())
+    executor = MultiThreadedExecutor(2, context=node.context)
+    executor.add_node(node)
+    for level in range(1, 6):
+        publisher.publish(ros_types.Log(level=level))
+        executor.spin_once(timeout_sec=0)
+    is_released.set()
+    until(lambda: (executor.spin_once(timeout_sec=0.01), received[-1:] == [5])[1], lambda: received)
+    assert sorted(received) == [1, 2, 5], "the subscription keeps one message"
+    assert executor.shutdown()

@@ -55,6 +55,7 @@ class MultiThreadedExecutor(Executor):
                 "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
                 stacklevel=2,
             )
+        self._num_threads = num_threads
         self._executor = ThreadPoolExecutor(num_threads)
         self._futures: list[PoolFuture[None]] = []
         weakref.finalize(self, self._executor.shutdown, wait=False)
@@ -64,6 +65,10 @@ class MultiThreadedExecutor(Executor):
         is_over = super().shutdown(timeout_sec)
         self._executor.shutdown(wait=False)
         return is_over
+
+    def _has_free_thread(self) -> bool:
+        """Whether a thread is free: what waits for one stays in its entity, whose limits hold."""
+        return len(self._running) < self._num_threads
 
     def _spin_once(self, timeout_sec: float | None, condition: Callable[[], bool]) -> None:
         with suppress(ExternalShutdownException):

@@ -190,6 +190,10 @@ class Executor:
 
     _has_one_thread = True
 
+    def _has_free_thread(self) -> bool:
+        """Whether a callback that is handed out now would run at once."""
+        return True
+
     def can_execute(self, entity: Entity) -> bool:
         """Whether a callback of an entity may start now."""
         return entity.callback_group is None or entity.callback_group.can_execute(entity)
@@ -233,7 +237,7 @@ class Executor:
                 if condition():
                     raise ConditionReachedException
                 self._poll()
-                found = self._queue.pop(self._nodes)
+                found = self._queue.pop(self._nodes) if self._has_free_thread() else None
                 if found is None:
                     if deadline.is_over():
                         raise TimeoutException
