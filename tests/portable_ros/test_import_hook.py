@@ -45,6 +45,8 @@ def test_it_serves_all_where_there_is_no_ros(without_ros: Path) -> None:
         "from rclpy.node import Node\n"
         "from std_msgs.msg import *\n"
         "import rclpy.node\n"
+        "from std_msgs.msg._string import String as Same\n"
+        "assert Same is String\n"
         "assert rclpy.node.Node is Node and String is std_msgs.msg.String\n"
         "print(rclpy.__spec__.name, String.__module__, std_srvs.srv.Trigger.Request())"
     )

@@ -47,7 +47,7 @@ class _RoomLoader(Loader):
 
 
 class _MessagesLoader(Loader):
-    """Makes a package of messages, such as `std_msgs`, or its module, such as `std_msgs.msg`."""
+    """Makes a package of messages, such as `std_msgs`, or a module of it, such as `std_msgs.msg`."""
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         """Let the import system make an empty module."""
@@ -74,11 +74,12 @@ class _Finder(MetaPathFinder):
                 return None
             has_modules = own.submodule_search_locations is not None
             return ModuleSpec(fullname, _RoomLoader(fullname), origin=own.origin, is_package=has_modules)
-        from thymio_sim_ros.portable_ros.messages.interface_files import FORMS, PACKAGES, is_package
+        from thymio_sim_ros.portable_ros.messages.interface_files import PACKAGES, is_module, is_package
 
-        if top in PACKAGES and rest in ("", *FORMS):
+        if top in PACKAGES and (not rest or is_module(fullname)):
             return _messages_spec(fullname)
-        if rest in FORMS and is_package(top) and not _is_regular(rest, path or ()):
+        name = fullname.rpartition(".")[2]
+        if rest and is_package(top) and is_module(fullname) and not _is_regular(name, path or ()):
             return _messages_spec(fullname)
         return None
 
@@ -96,7 +97,7 @@ class _LastFinder(MetaPathFinder):
 
 
 def _messages_spec(fullname: str) -> ModuleSpec:
-    return ModuleSpec(fullname, _MessagesLoader(), origin=__file__, is_package="." not in fullname)
+    return ModuleSpec(fullname, _MessagesLoader(), origin=__file__, is_package=fullname.count(".") < 2)
 
 
 def _is_regular(name: str, folders: Iterable[str]) -> bool:

@@ -24,11 +24,13 @@ __all__ = [
     "SERVICE_PARTS",
     "interfaces",
     "is_action",
+    "is_module",
     "is_package",
     "is_service",
     "messages",
     "module_of",
     "names",
+    "of_module",
     "place_of",
     "sections",
     "services",
@@ -153,6 +155,20 @@ def module_of(name: str) -> str:
     for part in _ADDED_TO_NAMES.get(form, ()):
         short = short.removesuffix(f"_{part}")
     return f"{package}.{form}._{snake_case(short)}"
+
+
+def of_module(module: str) -> Iterator[str]:
+    """The full names of the interfaces of a module: `std_msgs.msg` has all of its form, `std_msgs.msg._string` one."""
+    package, form, *own = module.split(".")
+    for name in (f"{package}/{form}/{short}" for short in names(package, form)):
+        if not own or module_of(name) == module:
+            yield name
+
+
+def is_module(module: str) -> bool:
+    """Whether a package that there is has a module of this full name."""
+    _, form, *own = module.split(".")
+    return form in FORMS and (not own or any(True for _ in of_module(module)))
 
 
 def snake_case(name: str) -> str:
