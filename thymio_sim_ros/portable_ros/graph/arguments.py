@@ -27,17 +27,19 @@ _WHAT = {
     "enclave": "enclave",
     "ignored": "log config file",
 }
+_OF_TOPICS, _OF_SERVICES = "rostopic://", "rosservice://"
 _EVERY_NODE = "/**"
 _WILDCARD = re.compile(r"\*\*?")
 
 
 @dataclass(frozen=True, slots=True)
 class _Remap:
-    """`node`: the only node that the rule is for; empty for all."""
+    """`node`: the only node that the rule is for, empty for all; `scheme`: whether it is for topics or services."""
 
     node: str
     old: str
     new: str
+    scheme: str = ""
 
 
 @dataclass(slots=True)
@@ -59,10 +61,12 @@ class Arguments:
         """The namespace of a node after the rules."""
         return next((one.new for one in self.remaps if one.old == "__ns" and one.node in ("", name)), namespace)
 
-    def remapped(self, full: str, node: str, namespace: str) -> str | None:
+    def remapped(self, full: str, node: str, namespace: str, *, is_service: bool) -> str | None:
         """The new full name of a topic or a service of a node; None if no rule is for it."""
+        schemes = ("", _OF_SERVICES if is_service else _OF_TOPICS)
         for one in self.remaps:
-            if one.node in ("", node) and not one.old.startswith("__") and expanded(one.old, node, namespace) == full:
+            is_for_node = one.node in ("", node) and one.scheme in schemes and not one.old.startswith("__")
+            if is_for_node and expanded(one.old, node, namespace) == full:
                 return expanded(one.new, node, namespace)
         return None
 
@@ -172,12 +176,12 @@ def _pattern(node: str) -> str:
 
 def _remap(text: str) -> _Remap:
     node, old, new = _rule(text)
-    for scheme in ("rostopic://", "rosservice://"):
-        old, new = old.removeprefix(scheme), new.removeprefix(scheme)
+    scheme = next((one for one in (_OF_TOPICS, _OF_SERVICES) if old.startswith(one)), "")
+    old, new = old.removeprefix(scheme), new.removeprefix(scheme)
     old = {"__name": "__node"}.get(old, old)
     problem = {"__node": node_problem, "__ns": namespace_problem}.get(old, lambda _: None)(new)
     if problem is not None:
         raise TextValueError(problem[0])
     if old not in ("__node", "__ns") and not re.fullmatch(r"[~/A-Za-z_{}][\w/{}]*", new):
         raise TextValueError(f"found {new!r}, expected a name")
-    return _Remap(node, old, new)
+    return _Remap(node, old, new, scheme)

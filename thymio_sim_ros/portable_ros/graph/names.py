@@ -112,7 +112,8 @@ def node_problem(name: str) -> NameProblem:
 def expanded(name: str, node: str, namespace: str) -> str:
     """The full name of a topic or service of a node.
 
-    Raises TypeError for a name that is no text, and ValueError for one that is not valid.
+    Raises TypeError for a name that is no text, and ValueError for one that is not valid, whose text ends with the
+    reason.
     """
     if not isinstance(name, str):
         raise TypeError(f"topic name: found {name!r}, expected a str")

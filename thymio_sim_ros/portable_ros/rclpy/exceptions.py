@@ -12,8 +12,7 @@ class NotInitializedException(Exception):
     """There is no initialized context."""
 
     def __init__(self, message: str | None = None) -> None:
-        detail = f": {message}" if message else ""
-        super().__init__(f"rclpy.init() has not been called{detail or '.'}")
+        super().__init__("rclpy.init() has not been called." + (f" msg:{message}" if message else ""))
 
 
 class NoTypeSupportImportedException(Exception):

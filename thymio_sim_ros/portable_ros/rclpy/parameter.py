@@ -110,7 +110,8 @@ class Parameter:
     def from_parameter_msg(cls, param_msg: ParameterMessage) -> Parameter:
         """The parameter of a message."""
         kind = Type(param_msg.value.type)
-        return cls(param_msg.name, kind, parameter_value_to_python(param_msg.value))
+        value = None if kind is Type.NOT_SET else getattr(param_msg.value, _FIELDS[kind.value])
+        return cls(param_msg.name, kind, value)
 
     @property
     def name(self) -> str:

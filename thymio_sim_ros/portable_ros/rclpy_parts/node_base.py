@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 from thymio_sim_ros.portable_ros.graph.arguments import Arguments, parse
 from thymio_sim_ros.portable_ros.graph.entity import Handle
-from thymio_sim_ros.portable_ros.graph.names import expanded
+from thymio_sim_ros.portable_ros.graph.names import expanded, full_topic_problem
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError
 from thymio_sim_ros.portable_ros.rclpy.clock import Clock, ROSClock
 from thymio_sim_ros.portable_ros.rclpy.exceptions import NotInitializedException
@@ -68,14 +68,12 @@ class NodeBase:
         return f"{self._namespace.rstrip('/')}/{self._name}"
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """The full name of a topic, after the rules of the command line unless `only_expand`."""
-        with self._handle:
-            return self._resolved(topic, only_expand=only_expand)
+        """The full name of a topic, after the rules of the command line unless `only_expand`. Raises RCLError."""
+        return self._checked(topic, is_service=False, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """The full name of a service, after the rules of the command line unless `only_expand`."""
-        with self._handle:
-            return self._resolved(service, only_expand=only_expand)
+        """The full name of a service, after the rules of the command line unless `only_expand`. Raises RCLError."""
+        return self._checked(service, is_service=True, only_expand=only_expand)
 
     @property
     def executor(self) -> Executor | None:
@@ -130,11 +128,23 @@ class NodeBase:
             new_name, new_space = arguments.node_name(name), arguments.namespace(name, new_space)
         return new_name, new_space
 
-    def _resolved(self, name: str, *, only_expand: bool = False) -> str:
+    def _checked(self, name: str, *, is_service: bool, only_expand: bool) -> str:
+        """The full name of a topic or a service. Raises RCLError for one that is not valid."""
+        with self._handle:
+            try:
+                full = self._resolved(name, is_service=is_service, only_expand=only_expand)
+            except ValueError as error:
+                reason = str(error).rpartition(" is invalid: ")[2]
+                raise RCLError(f"failed to resolve name: {reason}") from error
+            if problem := full_topic_problem(full):
+                raise RCLError(f"failed to resolve name: {problem[0]}")
+            return full
+
+    def _resolved(self, name: str, *, is_service: bool, only_expand: bool = False) -> str:
         full = expanded(name, self._name, self._namespace)
         if only_expand:
             return full
-        remapped = (one.remapped(full, self._name, self._namespace) for one in self._arguments)
+        remapped = (one.remapped(full, self._name, self._namespace, is_service=is_service) for one in self._arguments)
         return next((one for one in remapped if one is not None), full)
 
     def _require_context(self, action: str) -> None:
@@ -146,7 +156,7 @@ class NodeBase:
         """The full name of an endpoint. Raises for one that is not valid."""
         with self._handle:
             validate_topic_name(name, is_service=is_service)
-            full = self._resolved(name)
+            full = self._resolved(name, is_service=is_service)
             validate_full_topic_name(full, is_service=is_service)
             return full
 

@@ -154,11 +154,13 @@ class NodeParameters(NodeBase):
     def add_on_set_parameters_callback(
         self, callback: Callable[[list[Parameter]], ros_types.SetParametersResult]
     ) -> None:
-        """Let a callback accept or reject new values."""
+        """Let a callback accept or reject new values. Raises TypeError for what cannot be called."""
+        _require_callable(callback)
         self._on_set_parameters_callbacks.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: Callable[[list[Parameter]], None]) -> None:
-        """Call back after parameters were set."""
+        """Call back after parameters were set. Raises TypeError for what cannot be called."""
+        _require_callable(callback)
         self._post_set_parameters_callbacks.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: Callable[[list[Parameter]], list[Parameter]]) -> None:
@@ -239,9 +241,10 @@ class NodeParameters(NodeBase):
             descriptor = (self._descriptors if descriptors is None else descriptors).get(parameter.name)
             if descriptor is None:
                 continue
-            reason = self._problem(parameter, descriptor)
             if descriptors is None and descriptor.read_only:
                 reason = f"Trying to set a read-only parameter: {parameter.name}."
+            else:
+                reason = self._problem(parameter, descriptor)
             if reason:
                 return ros_types.SetParametersResult(successful=False, reason=reason)
         for callback in list(self._on_set_parameters_callbacks):
@@ -281,6 +284,11 @@ class NodeParameters(NodeBase):
         for callback in list(self._post_set_parameters_callbacks):
             callback(parameters)
         return ros_types.SetParametersResult(successful=True)
+
+
+def _require_callable(callback: object) -> None:
+    if not callable(callback):
+        raise TypeError("Callback must be callable, got {}", type(callback))  # as rclpy's: a tuple of both
 
 
 def _require_texts(names: Sequence[str]) -> None:

@@ -69,7 +69,10 @@ class RcutilsLogger:
         return log_levels.effective_level(self.name) <= LoggingSeverity(severity)
 
     def log(self, message: str, severity: int, **kwargs: Any) -> bool:
-        """Log a line; return whether it was logged. Raises TypeError and ValueError for wrong or changed options."""
+        """Log a line; return whether it was logged.
+
+        Raises TypeError for a line that is no text, and TypeError and ValueError for wrong or changed options.
+        """
         level = LoggingSeverity(severity)
         if not self.is_enabled_for(level):
             return False
@@ -82,11 +85,13 @@ class RcutilsLogger:
         name = kwargs.pop("name", self.name)
         if not self._has_passed((place, frame.f_lasti), level, name, kwargs):
             return False
+        if not isinstance(message, str):
+            raise TypeError(f"message of a log: found {message!r}, expected a str")
         now_ns = system_ns()
-        log_levels.print_line(name, level, str(message), now_ns, place)
+        log_levels.print_line(name, level, message, now_ns, place)
         sink = next((_sinks[one] for one in _above(name) if one in _sinks), None)
         if sink is not None:
-            sink(name, level, str(message), now_ns, place)
+            sink(name, level, message, now_ns, place)
         return True
 
     def debug(self, message: str, **kwargs: Any) -> bool:
