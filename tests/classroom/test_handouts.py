@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import base64
 import csv
+import hashlib
 import io
 import json
 import zipfile
@@ -146,12 +147,13 @@ def test_a_solution_names_its_task(group: Group) -> None:
 def test_stars_tries_and_time_of_a_mission_come_from_the_suite(group: Group) -> None:
     number = group.hand_out(kind="mission", name="bus.json", content=encoded(MISSION))
     seat = group.classroom.seats["ada"]
+    digest = hashlib.sha256(MISSION.encode()).hexdigest()
     for tries, has_passed, stars, at_s in (
         (0, False, 0, 0.0), (1, False, 0, 0.0), (1, False, 0, 9.5), (2, False, 0, 0.1), (2, True, 2, 7.25),
         (2, True, 2, 7.25), (1, False, 0, 0.0), (1, True, 1, 3.0), (2, True, 2, 1.0),
     ):  # fmt: skip
-        seat._on_try(MissionTry("bus", tries, has_passed, stars, at_s, ""))
-        seat._on_try(MissionTry("other", 1, True, 3, 1.0, ""))
+        seat._on_try(MissionTry("bus", tries, has_passed, stars, at_s, "", file=digest))
+        seat._on_try(MissionTry("bus", 1, True, 3, 1.0, "", file="another file of this name"))
     progress = group.ask("GET", "handouts")[0]["progress"]["ada"]
     assert (progress["stars"], progress["best_s"]) == (2, 7.25)
     assert progress["passed"]
@@ -166,6 +168,7 @@ def test_a_shipped_mission_is_handed_out_by_its_name_and_to_more_pupils_later(gr
     number = group.hand_out(kind="mission", name="forward", content="", title="Off you go", pupils=["ada"])
     assert group.open("ada", number) == {"kind": "mission", "name": "forward", "content": ""}
     group.classroom.seats["ada"]._on_try(MissionTry("forward", 1, True, 1, 3.0, ""))
+    group.classroom.seats["ada"]._on_try(MissionTry("forward", 2, True, 3, 3.0, "", file="of the pupil"))
     assert group.hand_out(kind="mission", name="forward", content="", pupils=["ben"]) == number
     [handout] = group.ask("GET", "handouts")
     assert (handout["progress"]["ada"]["stars"], handout["progress"]["ben"]["stars"]) == (1, 0)

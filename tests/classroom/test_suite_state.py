@@ -59,6 +59,7 @@ TRY = {
     "stars": [False],
     "at_s": 3.5,
     "trouble": "",
+    "file": "",
 }
 
 

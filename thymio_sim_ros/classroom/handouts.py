@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import hashlib
 import json
 import re
 import secrets
@@ -24,6 +25,7 @@ from aseba_vm.cli.output import write_file
 from aseba_vm.errors import AsebaError
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import read_text, write_text
+from thymio_sim_ros.classroom.suite_state import MissionTry
 from thymio_sim_ros.errors import ThymioSimError
 from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.files.resources import missions_folder
@@ -81,6 +83,7 @@ class Handouts:
     def __init__(self, path: Path) -> None:
         """Read those of a folder. Raises ClassError for a file that this program has not written, and OSError."""
         self._path = path
+        self._digests: dict[str, str] = {}
         try:
             listed = json.loads(read_text(path / _FILE) or "[]")
             self._all = {handout.id: handout for handout in map(_handout, listed)}
@@ -104,6 +107,14 @@ class Handouts:
     def content(self, handout: Handout) -> bytes:
         """The file that was handed out. Raises OSError."""
         return (self._path / f"{handout.id}.bin").read_bytes()
+
+    def is_tried(self, handout: Handout, attempt: MissionTry) -> bool:
+        """Whether a try is one of this mission. A file is recognized by its content, not its name. Raises OSError."""
+        if handout.kind != "mission" or attempt.file == "":
+            return handout.is_shipped_as(attempt.mission)
+        if handout.id not in self._digests:
+            self._digests[handout.id] = hashlib.sha256(self.content(handout)).hexdigest()
+        return self._digests[handout.id] == attempt.file
 
     def add(
         self,

@@ -321,10 +321,10 @@ class Seat:
 
     def _on_try(self, attempt: MissionTry) -> None:
         self._tries.add(attempt)
-        of_class = (one for one in self._handouts.of(self.place.id) if one.kind == "mission")
-        handout = next((one for one in of_class if one.stem == attempt.mission), None)
-        if handout is not None:
-            with self._reporting():
+        with self._reporting():
+            of_class = self._handouts.of(self.place.id)
+            handout = next((one for one in of_class if self._handouts.is_tried(one, attempt)), None)
+            if handout is not None:
                 self.progress.tried(handout, attempt)
 
     @contextlib.contextmanager

@@ -52,6 +52,8 @@ class MissionTry:
     done: int = 0
     """Lines of the checklist that are done."""
     is_over: bool = False
+    file: str = ""
+    """SHA-256 of the file that the pupil has opened; "" is a mission of the simulator."""
 
 
 def read_state(text: str) -> SuiteState:
@@ -85,6 +87,7 @@ def read_try(text: str) -> MissionTry:
             "stars": list(stars),
             "at_s": int() | float() as at_s,
             "trouble": str(trouble),
+            "file": str(file),
         } if len(mission) <= _LONGEST_NAME and not isinstance(tries, bool):
             return MissionTry(
                 mission,
@@ -95,8 +98,9 @@ def read_try(text: str) -> MissionTry:
                 trouble=trouble[:20],
                 done=_count(done),
                 is_over=state in ("passed", "failed"),
+                file=file,
             )
-    raise SuiteStateError("expected the fields mission, tries, done, state, stars, at_s and trouble")
+    raise SuiteStateError("expected the fields mission, tries, done, state, stars, at_s, trouble and file")
 
 
 def _count(values: list[object]) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import hashlib
 import json
 from pathlib import Path
 
@@ -150,6 +151,12 @@ def test_the_file_of_a_client_is_a_mission(ros, simulation):
     file["facts"]["bump"].pop("what")
     assert start(ros, "my.json", json.dumps(file).encode()) == ""
     assert latest(ros, "/simulator/_mission")["name"] == "my"
+    mine = json.dumps(file).encode()
+    assert latest(ros, "/simulator/_mission/try")["file"] == hashlib.sha256(mine).hexdigest()
+    assert start(ros, "forward.json", mine) == ""  # is not the shipped one, whose stars are others
+    assert latest(ros, "/simulator/_mission")["name"] == "forward.json"
+    assert start(ros, "forward") == ""
+    assert latest(ros, "/simulator/_mission/try")["file"] == ""
 
 
 @pytest.mark.parametrize(

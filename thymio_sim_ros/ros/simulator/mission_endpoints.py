@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import hashlib
 import json
 import re
 import tempfile
@@ -25,7 +26,7 @@ from thymio_sim_ros.missions import Mission, MissionError, load_mission
 from thymio_sim_ros.missions.description import described, progress
 from thymio_sim_ros.missions.documents import mission_after
 from thymio_sim_ros.missions.live import LiveMission, check_fits
-from thymio_sim_ros.missions.shipped import find_mission
+from thymio_sim_ros.missions.shipped import find_mission, shipped
 from thymio_sim_ros.missions.trial import programs_of_others
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks
@@ -70,7 +71,7 @@ class MissionEndpoints:
             name: node.create_publisher(TOPICS[name].type, name, TOPICS[name].profile) for name in (_MISSION, _TRY)
         }
         self.live: LiveMission | None = None
-        self._name = ""
+        self._name = self._digest = ""
         self._shown: tuple[Any, ...] = ()
         """What the last message about the try was made of."""
         self._published_ns = 0
@@ -101,7 +102,7 @@ class MissionEndpoints:
             self.live = LiveMission(mission, self._runner.engine, self._runner.reset)
         except FieldError as error:
             raise MissionError(opened.file, error) from error
-        self._name = Path(opened.file).stem if value else name
+        self._name, self._digest = _names(opened.file, name, value)
         self._load_programs(opened.programs)
         robot = self._robots.names[self.live.robot].name
         following = Path(mission.next).stem if mission.next else mission_after(self._name)
@@ -161,11 +162,24 @@ class MissionEndpoints:
         shown = None
         if self.live is not None:
             self._shown, self._published_ns = _seen(self.live), time.monotonic_ns()
-            shown = progress(self.live) | {"mission": self._name}
+            shown = progress(self.live) | {"mission": self._name, "file": self._digest}
         self._publishers[_TRY].publish(String(data=json.dumps(shown)))
 
     def _publish_mission(self, content: dict[str, Any] | None) -> None:
         self._publishers[_MISSION].publish(String(data=json.dumps(content)))
+
+
+def _names(file: str, name: str, value: str) -> tuple[str, str]:
+    """The name of a mission, and the SHA-256 of the file that a client has sent, which is "" for others.
+
+    A file with the name of a shipped mission keeps its ending: the stars of one are not those of the other.
+    """
+    upload = _UPLOAD.fullmatch(value)
+    if upload is None:
+        return name, ""
+    stem = Path(file).stem
+    is_taken = any(each.name == stem for step in shipped() for each in step.missions)
+    return file if is_taken else stem, hashlib.sha256(base64.b64decode(upload["content"])).hexdigest()
 
 
 def _seen(live: LiveMission) -> tuple[Any, ...]:
