@@ -26,6 +26,11 @@ WRITTEN = (
     "onevent prox\n\tmotor.left.target = 100\n\tmotor.right.target = 100\n\tif acc[0] > 30 then\n"
     "\t\tcall leds.top(32, 0, 0)\n\tend"
 )
+FORWARD = (
+    "onevent buttons\nwhen button.forward == 1 do\nmotor.left.target = 300\nmotor.right.target = 300\n"
+    "call leds.top(0, 32, 0)\nend"
+)
+"""A solution of the first mission."""
 RIGHT = "\ue014"
 POSE = "window.thymio.state().robot.latest.pose"
 RUNS = "return window.thymio.state().program?.state === 'running'"
@@ -159,3 +164,19 @@ def test_a_playground_is_built_and_tried(webkit, world):
     webkit.wait(count, 3)
     webkit.click("#creator-try")
     webkit.wait("return !window.thymio.built().isOpen && window.thymio.state().simulator.playground !== 'base'")
+
+
+def test_the_first_mission_is_played_from_the_list_to_the_third_star(webkit, world):
+    webkit.open(world("base", "none"))
+    webkit.click("#missions-open")
+    webkit.click("[data-mission=forward]")
+    webkit.wait("return window.thymio.state().mission?.name === 'forward'")
+    webkit.click("[data-mission-language=text]")
+    webkit.click(".cm-content")
+    webkit.type(FORWARD)
+    webkit.click("[data-verb=run]")
+    wait_for_one(webkit, ".mission-passed")
+    stars = "return document.querySelectorAll('.mission-passed .mission-star:not(.mission-no)').length === 3"
+    webkit.wait(stars)
+    webkit.click("[data-mission-do=next]")
+    webkit.wait("return window.thymio.state().mission?.name === 'brake'")
