@@ -54,6 +54,25 @@ def test_it_serves_all_where_there_is_no_ros(without_ros: Path) -> None:
     assert found == "thymio_sim_ros.portable_ros.rclpy std_msgs.msg._string std_srvs.srv.Trigger_Request()"
 
 
+def test_modules_have_names_from_others_as_those_of_rclpy_do(without_ros: Path) -> None:
+    program = (
+        "import importlib, warnings\n"
+        "from thymio_sim_ros.portable_ros.import_hook import install\n"
+        "from thymio_sim_ros.portable_ros.rclpy_parts.borrowed_names import BORROWED\n"
+        "install()\n"
+        "for module, places in BORROWED.items():\n"
+        "    for name in ' '.join(places.values()).split(): getattr(importlib.import_module(module), name)\n"
+        "from rclpy.node import MsgType, Node, Optional, Publisher\n"
+        "from rclpy.publisher import Publisher as Same\n"
+        "warnings.simplefilter('ignore')\n"
+        "from rclpy.qos_event import QoSEventHandler, SubscriptionEventCallbacks\n"
+        "print(Publisher is Same)\n"
+        "import rclpy.node\n"
+        "print(hasattr(rclpy.node, 'nonsense'), hasattr(rclpy, 'nonsense'))"
+    )
+    assert _run(program, "-I", "-S", folder=without_ros).split() == ["True", "False", "False"]
+
+
 def test_unknown_names_are_the_usual_errors(without_ros: Path) -> None:
     program = (
         "from thymio_sim_ros.portable_ros.import_hook import install\n"

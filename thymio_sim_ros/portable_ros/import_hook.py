@@ -42,8 +42,15 @@ class _RoomLoader(Loader):
         return module
 
     def exec_module(self, module: ModuleType) -> None:
-        """Restore what the import system has changed: the module was executed under its own name."""
+        """Restore what the import system has changed: the module was executed under its own name.
+
+        Modules of rclpy get the names that they have from others.
+        """
+        from thymio_sim_ros.portable_ros.rclpy_parts.borrowed_names import BORROWED, lookup
+
         module.__spec__ = self._own_spec
+        if self._name in BORROWED:
+            module.__dict__["__getattr__"] = lookup(self._name, module.__dict__.get("__getattr__"))
 
 
 class _MessagesLoader(Loader):

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from importlib.machinery import PathFinder
 from pathlib import Path
 
+import pytest
+
 from thymio_sim_ros.portable_ros import rclpy as ours
+from thymio_sim_ros.portable_ros.rclpy_parts.borrowed_names import BORROWED
 
 C_LIBRARY = {"_rclpy_pybind11"}
 
@@ -21,4 +25,10 @@ def test_each_module_is_one_of_rclpy() -> None:
     real = _modules(Path(spec.origin).parent)
     found = _modules(Path(ours.__path__[0]))
     assert found - real == C_LIBRARY
-    assert real - found == {"destroyable", "qos_event"}  # a protocol of handles, and a name that is no longer used
+    assert real - found == {"destroyable"}  # a protocol of handles
+
+
+@pytest.mark.parametrize("module", BORROWED)
+def test_names_that_modules_have_from_others_are_those_of_rclpy(module: str) -> None:
+    names = {name for of_one in BORROWED[module].values() for name in of_one.split()}
+    assert names <= set(dir(import_module(module)))

@@ -19,7 +19,25 @@ from thymio_sim_ros.portable_ros.rclpy.qos import QoSPolicyKind, qos_policy_name
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
 
-__all__ = ["EventHandler", "PublisherEventCallbacks", "SubscriptionEventCallbacks", "UnsupportedEventTypeError"]
+__all__ = [
+    "EventHandler",
+    "IncompatibleTypeInfo",
+    "PublisherEventCallbacks",
+    "QoSEventHandler",
+    "QoSLivelinessChangedInfo",
+    "QoSLivelinessLostInfo",
+    "QoSMessageLostInfo",
+    "QoSOfferedDeadlineMissedInfo",
+    "QoSOfferedIncompatibleQoSInfo",
+    "QoSPublisherEventType",
+    "QoSPublisherMatchedInfo",
+    "QoSRequestedDeadlineMissedInfo",
+    "QoSRequestedIncompatibleQoSInfo",
+    "QoSSubscriptionEventType",
+    "QoSSubscriptionMatchedInfo",
+    "SubscriptionEventCallbacks",
+    "UnsupportedEventTypeError",
+]
 
 
 class QoSPublisherEventType(IntEnum):
@@ -119,6 +137,10 @@ class EventHandler(Entity):
         """Take an event."""
         info = self._queue.get()
         return None if info is None else (self.callback, (info,))
+
+
+QoSEventHandler = EventHandler
+"""The former name."""
 
 
 class _EventCallbacks:
