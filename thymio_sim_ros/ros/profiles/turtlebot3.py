@@ -82,6 +82,21 @@ def _reset(_request: Any, _response: Any, world: ProfileWorld) -> None:
 
 _NO_MAP = "start a mapping or navigation node of your own; thymio-sim --ros-args -p publish_map:=true publishes /map"
 
+_OF_CAMERA = ("image_raw", "image_raw/compressed", "image", "image/compressed", "camera_info", "points")
+_OF_NAV2 = (
+    "navigate_to_pose", "navigate_through_poses", "follow_waypoints", "compute_path_to_pose", "spin", "backup",
+    "goal_pose", "initialpose", "amcl_pose", "plan", "particle_cloud", "reinitialize_global_localization",
+    "global_costmap/costmap", "local_costmap/costmap",
+)  # fmt: skip
+_OF_GAZEBO = {
+    "/spawn_entity": "use thymio-sim --playground, or /simulator/spawn",
+    "/delete_entity": "use /simulator/remove",
+    "/pause_physics": "call /simulator/pause with data: true",
+    "/unpause_physics": "call /simulator/pause with data: false",
+    "/set_entity_state /gazebo/set_entity_state": "place robots by /simulator/set_poses",
+    "/get_entity_state /gazebo/get_entity_state /model_states /gazebo/model_states": "use /simulator/get_poses",
+}
+
 PROFILE = Profile(
     "turtlebot3",
     "a TurtleBot3 with /scan, /imu and its frames, among nine columns",
@@ -129,13 +144,13 @@ PROFILE = Profile(
     actions=OWN_ACTIONS,
     missing=(
         Missing("magnetic_field", "The simulated robot has no magnetometer: use the orientation of imu."),
-        Missing("camera/image_raw", "The simulated robot has no camera."),
-        Missing("camera/image_raw/compressed", "The simulated robot has no camera."),
+        *(Missing(name, "The simulated robot has no camera.") for name in _OF_CAMERA),
         Missing("/map", f"There is no SLAM in the simulator: {_NO_MAP}"),
-        Missing("navigate_to_pose", "Nav2 does not run here: use the action navigate_to_position, or start Nav2."),
-        Missing("/spawn_entity", "Gazebo does not run here: use thymio-sim --playground, or /simulator/spawn."),
-        Missing("/delete_entity", "Gazebo does not run here: use /simulator/remove."),
-        Missing("/pause_physics", "Gazebo does not run here: call /simulator/pause with data: true."),
-        Missing("/unpause_physics", "Gazebo does not run here: call /simulator/pause with data: false."),
+        *(Missing(name, "Nav2 does not run here: use navigate_to_position, or start Nav2.") for name in _OF_NAV2),
+        *(
+            Missing(name, f"Gazebo does not run here: {instead}.")
+            for words, instead in _OF_GAZEBO.items()
+            for name in words.split()
+        ),
     ),
 )
