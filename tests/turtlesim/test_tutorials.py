@@ -1,8 +1,9 @@
-"""The official tutorials with a Thymio as turtle: their commands, and turtles that follow each other by tf2."""
+"""What the official tutorials do, executed as text: commands, turtles by tf2, nodes, interfaces of one's own."""
 
 from __future__ import annotations
 
 import shutil
+from importlib.machinery import PathFinder
 from pathlib import Path
 
 import pytest
@@ -17,8 +18,18 @@ pytestmark = [
 ]
 
 
-@pytest.mark.parametrize("name", ["commands", "follow"])
+@pytest.mark.parametrize("name", ["commands", "follow", "libraries", "interfaces"])
 def test_the_tutorials_run_as_written(name: str, ros_domain: int, tmp_path: Path) -> None:
     text = Path(__file__).with_name(f"{name}.md").read_text(encoding="utf-8")
+    with terminals.reader(tmp_path, ros_domain) as reader:
+        reader.follow(text)
+
+
+def test_nodes_of_the_tutorials_run_as_written_on_an_installed_ros(ros_domain: int, tmp_path: Path) -> None:
+    text = Path(__file__).with_name("libraries.md").read_text(encoding="utf-8")
+    text = text.replace("--portable --like turtlesim", "--ros").replace("thymio-sim node ", "python ")
+    if PathFinder.find_spec("example_interfaces") is None:  # not among the wheels
+        before, _, rest = text.partition("## A service and a client")
+        text = before + rest[rest.index("## Parameters") :]
     with terminals.reader(tmp_path, ros_domain) as reader:
         reader.follow(text)

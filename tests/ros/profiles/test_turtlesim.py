@@ -15,6 +15,7 @@ from std_srvs.srv import Empty
 from visualization_msgs.msg import MarkerArray
 
 from tests import ros_graph
+from thymio_sim_ros.ros.profiles import turtlesim
 from thymio_sim_ros.sim.commands import Lift
 
 pytestmark = ros_graph.needs_package("turtlesim")
@@ -149,6 +150,14 @@ def test_a_turtle_that_cannot_be_is_refused_with_the_reason(ros, sim, call, fiel
 def test_a_turtle_may_be_spawned_with_any_angle(sim, call):
     assert call(srv.Spawn, "/spawn", x=2.0, y=2.0, theta=6.3 + 2 * math.pi, name="dizzy").name == "dizzy"
     assert pose_of(sim, "dizzy")[2] == pytest.approx(6.3 - 2 * math.pi, abs=1e-5)
+
+
+def test_turtles_without_end_are_refused(ros, sim, call, monkeypatch):
+    monkeypatch.setattr(turtlesim, "MOST_TURTLES", 3)
+    logged = ros.collect(Log, "/rosout")
+    names = [call(srv.Spawn, "/spawn", x=2.0, y=2.0, theta=0.0, name="").name for _ in range(4)]
+    assert names == ["turtle2", "turtle3", "", ""]
+    sim.until(lambda: any("/spawn rejected: found 3 turtles, expected at most so many" in line.msg for line in logged))
 
 
 def test_turtles_drive_through_each_other_as_games_of_catching_need_it(ros, sim, call):

@@ -42,6 +42,9 @@ BACKGROUND = (69, 86, 255)
 PEN = SetPen(down=True, color=(0xB3 / 255, 0xB8 / 255, 1.0), width_m=3 / PIXELS * UNIT_M)
 """The pen of a new turtle. It draws a line to where the turtle is teleported, too."""
 
+MOST_TURTLES = 100
+"""More are refused: each is a robot with all its topics, and a node that spawns without end would stop the suite."""
+
 SPEED_RAD_S = 1.0
 """Of a turn to a heading."""
 
@@ -92,6 +95,8 @@ def _finite(**values: float) -> None:
 
 def _spawn(request: Any, response: Any, world: ProfileWorld) -> None:
     _finite(x=request.x, y=request.y, theta=request.theta)
+    if len(world.robots) >= MOST_TURTLES:
+        raise ValueError(f"found {MOST_TURTLES} turtles, expected at most so many: kill one first")
     name = request.name or next(
         name for number in range(1, len(world.robots) + 2) if (name := f"turtle{number}") not in world.robots
     )
