@@ -57,6 +57,11 @@ def open_editor(page: Any, name: str) -> Opening:
     return Opening(paint_ms, sum(len(gzip.compress(request.response().body(), 6)) for request in loaded))
 
 
+def list_of_missions_ms(page: Any) -> float:
+    """From a click to the list of missions, in ms, on a page that has not opened it yet."""
+    return float(page.evaluate(PAINTED, ["#missions-open", ".mission-choice"]))
+
+
 def dragging(page: Any, seconds: float) -> float:
     """Frames per second while a row of a VPL program of `ROWS` rows is dragged; time of the playground is paused."""
     page.click("#pause")
