@@ -8,6 +8,7 @@ from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.device.options import DEFAULTS, DeviceOptions
 from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.network.settings import NetworkSettings
+from thymio_sim_ros.page_nodes.who import Who
 from thymio_sim_ros.sim.commands import MOTOR_MODELS
 from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
@@ -44,6 +45,7 @@ class SuiteConfig:
             on release (docs/spec/ros-interface.md section 13).
         tokens: tokens that clients of page and bridge need; None lets the bridge choose.
         trusted_proxies: addresses and networks of reverse proxies in front of page and bridge.
+        nodes: who may run ROS nodes that are written on the page.
         network: servers by which other programs reach the robots; none by default.
     """
 
@@ -72,4 +74,5 @@ class SuiteConfig:
     cmd_vel_timeout_s: float = 0.5
     tokens: Tokens | None = None
     trusted_proxies: tuple[str, ...] = ()
+    nodes: Who = Who.LOCAL
     network: NetworkSettings = NO_SERVERS

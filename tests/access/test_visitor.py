@@ -28,14 +28,14 @@ FORWARDED = {
 
 def test_a_trusted_proxy_reports_the_visitor() -> None:
     visitor = PROXIES.visitor(PROXY, headers(FORWARDED))
-    assert visitor == Visitor(PUPIL, "school.example", "https", "/thymio", is_proxied=True)
+    assert visitor == Visitor(PUPIL, "school.example", "https", "/thymio", is_proxied=True, is_forwarded=True)
     assert visitor.url == "https://school.example/thymio/"
 
 
 @pytest.mark.parametrize("proxies", [TrustedProxies(), PROXIES])
 def test_headers_of_others_do_not_count(proxies: TrustedProxies) -> None:
     visitor = proxies.visitor("10.0.0.2", headers(FORWARDED))
-    assert visitor == Visitor("10.0.0.2", "127.0.0.1:8080")
+    assert visitor == Visitor("10.0.0.2", "127.0.0.1:8080", is_forwarded=True)
     assert visitor.url == "http://127.0.0.1:8080/"
 
 

@@ -38,6 +38,11 @@ def test_with_ros_a_pupil_has_a_domain() -> None:
     assert environment(options, PLACE, {})["ROS_DOMAIN_ID"] == "3"
 
 
+def test_pupils_run_nodes_of_the_page_only_if_the_class_says_so() -> None:
+    assert "--no-nodes" in command(OPTIONS, 8105, "welcome", PARAMETERS)
+    assert "--nodes" in command(replace(OPTIONS, has_nodes=True), 8105, "welcome", PARAMETERS)
+
+
 def test_tokens_are_in_the_environment_only() -> None:
     assert "token" not in " ".join(command(OPTIONS, 8105, "welcome", PARAMETERS))
     assert environment(OPTIONS, PLACE, {"PATH": "/bin"})["THYMIO_SIM_TOKEN"] == "secret-token"

@@ -27,6 +27,7 @@ FORWARDED = "x-forwarded-"
 
 _PREFIX = re.compile(r"(?:/(?!\.{1,2}(?:/|$))[A-Za-z0-9._~-]{1,100}){1,20}/?")
 _SCHEMES = ("http", "https")
+_OF_PROXIES = ("Forwarded", "Via", "X-Forwarded-For", "X-Forwarded-Host", "X-Forwarded-Proto", "X-Real-IP")
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = ipaddress.IPv4Address | ipaddress.IPv6Address
@@ -49,6 +50,8 @@ class Visitor:
     """Path of the server: "" or such as `/lab/thymio`."""
     is_proxied: bool = False
     """Whether a trusted proxy has passed the request on."""
+    is_forwarded: bool = False
+    """Whether a header says that a proxy has passed the request on, be it a trusted one or not."""
     origin: str | None = None
     """That of the web page which makes the request; None for a program, and for links and pictures."""
     is_from_link: bool = False
@@ -98,6 +101,7 @@ class TrustedProxies:
             (_matching(HOST, _last(hosts)) or "") if hosts else None,
             scheme,
             origin=origins[-1] if origins else None,
+            is_forwarded=any(map(values, _OF_PROXIES)),
             is_from_link=_last(values("Sec-Fetch-Site")).lower() == "cross-site",
             query_token=_query_token(target),
             bearer_token=_bearer_token(values("Authorization")),

@@ -58,6 +58,8 @@ class SuiteOptions:
     program: str
     first_domain: int | None = None
     """ROS domain of the first pupil; None: the embedded graph, which has none."""
+    has_nodes: bool = False
+    """Whether pupils may run ROS nodes that they write on the page."""
 
     def domain(self, place: Place) -> int | None:
         """ROS domain, None on the embedded graph."""
@@ -82,6 +84,7 @@ def command(options: SuiteOptions, port: int, program: str, parameters: Path) ->
     return [
         "--portable" if options.first_domain is None else "--ros",
         *("--address", "localhost", "--trusted-proxy", "127.0.0.1", "--no-aseba", "--no-tdm-ports", "--http"),
+        "--nodes" if options.has_nodes else "--no-nodes",
         *("--port", str(port), "--no-foxglove-port"),
         *("--playground", options.playground, "--program", program),
         *("--ros-args", "-p", f"simulator:batch_ticks:={BATCH_TICKS}", "-p", f"simulator:clock_rate:={CLOCK_HZ}"),

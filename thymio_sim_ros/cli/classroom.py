@@ -22,7 +22,14 @@ from thymio_sim_ros.classroom.suite_process import SuiteOptions, discovery, prel
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.options import check_files, path_argument
 from thymio_sim_ros.cli.output import print_text
-from thymio_sim_ros.cli.page_options import add_certificate_options, add_proxy_option, check_port, given_certificate
+from thymio_sim_ros.cli.page_options import (
+    add_certificate_options,
+    add_nodes_option,
+    add_proxy_option,
+    check_port,
+    given_certificate,
+    given_nodes,
+)
 from thymio_sim_ros.cli.ros.graph_choice import add_graph_options, check_ros
 from thymio_sim_ros.cli.servers import address_argument, port_argument
 from thymio_sim_ros.device.layout import THYMIO
@@ -30,6 +37,7 @@ from thymio_sim_ros.end_signals import END_SIGNALS
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.names.domain import describe_range
+from thymio_sim_ros.page_nodes.who import Who
 from thymio_sim_ros.suite_config import SuiteConfig
 
 __all__ = ["run"]
@@ -52,7 +60,7 @@ def run(argv: Sequence[str]) -> int:
     except ClassError as error:
         raise UsageError(str(error)) from error
     check_files(given.playground, given.program, "", THYMIO)
-    options = SuiteOptions(given.playground, given.program, _first_domain(given))
+    options = SuiteOptions(given.playground, given.program, _first_domain(given), given_nodes(given) is Who.ALL)
     tls = given_certificate(given)
     proxies = TrustedProxies(given.trusted_proxy)
     place = ClassAddress(given.address, given.port, proxies, tls, has_room=not given.links_only)
@@ -202,6 +210,7 @@ def _parser() -> argparse.ArgumentParser:
         action="store_true",
         help="no code of the room: pupils enter by their own links only, so that no one can choose another name",
     )
+    add_nodes_option(parser)
     add_certificate_options(parser, "the class speaks")
     add_proxy_option(parser)
     add_graph_options(parser, default="the embedded graph, which takes half of the machine")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import ssl
+import sys
 
 from thymio_sim_ros.access.tokens import READ_ONLY_VARIABLE, TOKEN, TOKEN_VARIABLE, Tokens
 from thymio_sim_ros.access.visitor import ProxyError, TrustedProxies
@@ -12,14 +13,17 @@ from thymio_sim_ros.bridge.listening import check_free
 from thymio_sim_ros.bridge.tls import TlsError, tls_context
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.servers import add_server_options, address_argument, port_argument
+from thymio_sim_ros.page_nodes.who import Who
 from thymio_sim_ros.suite_config import ADDRESS, SuiteConfig
 
 __all__ = [
     "add_certificate_options",
+    "add_nodes_option",
     "add_page_options",
     "add_proxy_option",
     "check_port",
     "given_certificate",
+    "given_nodes",
     "given_tokens",
 ]
 
@@ -60,11 +64,30 @@ def add_page_options(parser: argparse.ArgumentParser) -> None:
         help="port of the bridge, as Foxglove expects it (default: %(default)s); the bridge is on the page's port, too",
     )
     parser.add_argument("--no-foxglove-port", action="store_true", help="bridge and page on the page's port only")
+    add_nodes_option(parser)
     add_certificate_options(parser, "page and bridge speak")
     add_proxy_option(parser)
     add_server_options(parser)
     parser.add_argument("--no-web", action="store_true", help="no web page; Foxglove can still connect")
     parser.add_argument("--headless", action="store_true", help="only the ROS nodes: no page, no Foxglove bridge")
+
+
+def add_nodes_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option for ROS nodes that are written on the page."""
+    parser.add_argument(
+        "--nodes",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="who may run ROS nodes that are written on the page, Python that this computer executes: all with full "
+        "access, those of others in isolation, which needs Linux; or none (default: the user of this computer)",
+    )
+
+
+def given_nodes(options: argparse.Namespace) -> Who:
+    """Who may run nodes. Raises UsageError where nodes of others cannot be isolated."""
+    if options.nodes and not sys.platform.startswith("linux"):
+        raise UsageError("--nodes: nodes of other computers need the isolation of Linux; without it, yours run")
+    return Who.LOCAL if options.nodes is None else Who.ALL if options.nodes else Who.NONE
 
 
 def add_certificate_options(parser: argparse.ArgumentParser, use: str) -> None:

@@ -28,7 +28,13 @@ from thymio_sim_ros.cli.options import (
     program_option,
 )
 from thymio_sim_ros.cli.output import print_text
-from thymio_sim_ros.cli.page_options import add_page_options, check_port, given_certificate, given_tokens
+from thymio_sim_ros.cli.page_options import (
+    add_page_options,
+    check_port,
+    given_certificate,
+    given_nodes,
+    given_tokens,
+)
 from thymio_sim_ros.cli.ros.graph_choice import add_graph_options, choose_graph, describe_graph
 from thymio_sim_ros.cli.servers import Servers, select_servers
 from thymio_sim_ros.engine.replay import LoggedRun, last_run
@@ -171,6 +177,7 @@ def _suite_config(options: argparse.Namespace) -> SuiteConfig:
         replay_from_s=options.replay_from,
         tokens=given_tokens(options),
         trusted_proxies=tuple(options.trusted_proxy),
+        nodes=given_nodes(options),
     )
 
 

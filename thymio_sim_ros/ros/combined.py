@@ -88,7 +88,7 @@ def _nodes(
     thread: ServerThread | None,
 ) -> Iterator[AnnouncedNode]:
     given = defaults(suite)
-    tokens = suite.tokens
+    tokens, access = suite.tokens, None
     is_simulated = not suite.robot
     if is_simulated:
         simulator = Simulator(context, given[SIMULATOR], profile=_profile(suite))
@@ -116,11 +116,11 @@ def _nodes(
             page_thread=thread,
         )
         yield bridge
-        tokens = bridge.tokens
+        tokens, access = bridge.tokens, bridge.access_check
     if suite.web:
         from thymio_sim_ros.ros.web.node import WebPage
 
-        yield WebPage(context, given[PAGE], tokens, thread)
+        yield WebPage(context, given[PAGE], tokens, thread, access)
 
 
 def _profile(suite: SuiteConfig) -> Profile | None:

@@ -91,7 +91,7 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
     if suite.web:
         from thymio_sim_ros.ros.web.node import WebParams
 
-        values[PAGE] = WebParams(port=suite.port, foxglove_port=suite.foxglove_port, **both)
+        values[PAGE] = WebParams(port=suite.port, foxglove_port=suite.foxglove_port, nodes=suite.nodes.value, **both)
     return values
 
 

@@ -106,6 +106,10 @@ class ServerThread:
 
         self.call(mount)
 
+    def at_close(self, close: Callable[[], Awaitable[None]]) -> None:
+        """Have a function called when the servers end. Only in this thread."""
+        self._closers.append(close)
+
     def call(self, function: Callable[..., object], *arguments: Any) -> None:
         """Call a function in the thread; does nothing once the thread has ended."""
         with contextlib.suppress(RuntimeError):

@@ -10,6 +10,7 @@ import signal
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from socket import socket
 from typing import Any
 
 from thymio_sim_ros import course_packages
@@ -113,8 +114,11 @@ def membership(options: argparse.Namespace, name: str, *, waits: bool = False) -
 
 
 @contextlib.contextmanager
-def connected(url: str, token: str, name: str, *, waits: bool) -> Iterator[None]:
-    """Connect the embedded graph of this process with a server. The hook has to be installed. Raises UsageError."""
+def connected(url: str, token: str, name: str, *, waits: bool, link: socket | None = None) -> Iterator[None]:
+    """Connect the embedded graph of this process with a server, at first by `link` if there is one.
+
+    The hook has to be installed. Raises UsageError.
+    """
     from thymio_sim_ros.portable_ros.graph.graph import graph_of
     from thymio_sim_ros.portable_ros.rclpy.context import default_domain
     from thymio_sim_ros.portable_ros.rosbridge.transport import RosbridgeError, RosbridgeTransport
@@ -122,7 +126,9 @@ def connected(url: str, token: str, name: str, *, waits: bool) -> Iterator[None]
     def report(text: str) -> None:
         print(f"thymio-sim {name}: {text}", file=sys.stderr, flush=True)
 
-    transport = RosbridgeTransport(graph_of(default_domain()), url, _LazyCodec(), report, token=token, waits=waits)
+    transport = RosbridgeTransport(
+        graph_of(default_domain()), url, _LazyCodec(), report, token=token, waits=waits, link=link
+    )
     try:
         transport.start()
     except RosbridgeError as error:

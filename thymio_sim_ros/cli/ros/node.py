@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import atexit
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from socket import socket
 
 from thymio_sim_ros import course_packages
 from thymio_sim_ros.cli.errors import UsageError
@@ -17,7 +18,7 @@ from thymio_sim_ros.course_packages import field_checks
 from thymio_sim_ros.portable_ros import import_hook
 from thymio_sim_ros.ros_commands.arguments import NOUNS
 
-__all__ = ["run"]
+__all__ = ["prepare", "run", "run_connected"]
 
 ROS_ARGS = "--ros-args"
 _NOUN = "node"
@@ -49,10 +50,17 @@ def run(argv: Sequence[str]) -> int:
         raise UsageError("node: found no program, expected FILE or -m MODULE")
     if options.module is None and not Path(target).is_file():
         raise UsageError(f"{target}: found no such file, expected a program in Python")
+    prepare()
+    return run_connected(
+        target, arguments, url=options.connect, token=options.token, is_module=options.module is not None
+    )
+
+
+def prepare() -> None:
+    """Serve rclpy and messages of the embedded graph to the program of this process."""
     field_checks.switch_on()
     import_hook.install(is_forced=True)
     course_packages.add_to_path()
-    return _run_connected(options, target, arguments)
 
 
 def _split(words: Iterable[str]) -> tuple[list[str], list[str]]:
@@ -76,20 +84,32 @@ def _split(words: Iterable[str]) -> tuple[list[str], list[str]]:
     return own, arguments
 
 
-def _run_connected(options: argparse.Namespace, target: str, arguments: Sequence[str]) -> int:
-    """Run the program; the connection lasts until its threads have ended, and its pools of threads.
+def run_connected(
+    target: str,
+    arguments: Sequence[str],
+    *,
+    url: str,
+    token: str,
+    is_module: bool = False,
+    link: socket | None = None,
+    begin: Callable[[], object] = lambda: None,
+) -> int:
+    """Run a program as a member of the graph of a server; return its exit code. `prepare` comes first.
 
+    `link` is a connection of TCP with the server, where the process may not make one; `begin` is called when all is
+    ready for the program. The connection lasts until the threads of the program have ended, and its pools of threads.
     Python waits for both when it ends, then it calls what `atexit` has. Ctrl-C ends this process by its signal, without
-    all that.
+    all that. Raises UsageError for a server that rejects the connection.
     """
     from thymio_sim_ros.portable_ros.program import run_program
 
     connection = ExitStack()
-    connection.enter_context(connected(options.connect, options.token, "node", waits=True))
+    connection.enter_context(connected(url, token, "node", waits=True, link=link))
     connection.enter_context(interruptible())
     atexit.register(connection.close)
     try:
-        return run_program(target, arguments, is_module=options.module is not None)
+        begin()
+        return run_program(target, arguments, is_module=is_module)
     except KeyboardInterrupt:
         connection.close()
         raise

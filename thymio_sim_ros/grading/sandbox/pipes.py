@@ -54,6 +54,10 @@ if sys.platform == "win32":
             size = self._size(file)
             return os.read(file, min(size, _CHUNK)) if size else b""
 
+        def has_ended(self, file: int) -> bool:
+            """Whether `read` has found the end of a pipe."""
+            return file not in self._open
+
         def close(self) -> None:
             """Release what waits for the pipes."""
 
@@ -103,6 +107,10 @@ else:
             if not chunk and file in self._selector.get_map():
                 self._selector.unregister(file)  # closed by the process, which may still run
             return chunk
+
+        def has_ended(self, file: int) -> bool:
+            """Whether `read` has found the end of a pipe."""
+            return file not in self._selector.get_map()
 
         def close(self) -> None:
             """Release what waits for the pipes."""

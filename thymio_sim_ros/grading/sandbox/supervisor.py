@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from thymio_sim_ros.files.test_files import kept_files
+from thymio_sim_ros.grading.sandbox.environment import confined_environment
 from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
 from thymio_sim_ros.grading.sandbox.place import Place, write_files
-from thymio_sim_ros.grading.sandbox.readable import python_path
 from thymio_sim_ros.grading.sandbox.report_protocol import ForgedError, ReportProtocol
 from thymio_sim_ros.grading.sandbox.shown_paths import without_folders
 from thymio_sim_ros.grading.sandbox.watched_process import Ended, LimitError, WatchedProcess
@@ -31,8 +31,6 @@ _KEPT_BYTES = 3_000_000
 """Largest file that is kept to explain a failure."""
 _INSTEAD = "remove what writes to or closes files that the program has not opened"
 _OPEN_FLAGS = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_BINARY"))
-_ENVIRONMENT = ("LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "ROS_DISTRO", "RMW_IMPLEMENTATION", "SYSTEMROOT")
-"""Variables that a test process gets from the grader; all others may be secrets."""
 
 
 def supervise(job: Job, place: Place) -> Report:
@@ -123,16 +121,9 @@ class _Supervisor:
     def _start(self, work: Path) -> WatchedProcess:
         folder = self._place.folder
         environment = {
-            "PATH": os.defpath if sys.platform == "win32" else "/usr/local/bin:/usr/bin:/bin",
-            **dict.fromkeys(("HOME", "USERPROFILE", "TMPDIR", "TEMP", "TMP"), str(folder / "tmp")),
-            "LANG": "C.UTF-8",
-            "PYTHONUTF8": "1",
-            "PYTHONPATH": python_path(),
+            **confined_environment(folder),
             "PYTHONHASHSEED": "0",
-            "PYTHONDONTWRITEBYTECODE": "1",
             "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
-            "OPENBLAS_NUM_THREADS": "1",
-            **{name: os.environ[name] for name in _ENVIRONMENT if name in os.environ},
         }
         return WatchedProcess(
             [sys.executable, "-P", "-m", _TEST_PROCESS, str(folder / "out"), *self._job.tests],

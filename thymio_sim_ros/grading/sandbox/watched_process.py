@@ -17,7 +17,7 @@ from thymio_sim_ros.grading.limit_reasons import reason
 from thymio_sim_ros.grading.sandbox.pipes import PipeReader, inherited, word
 from thymio_sim_ros.grading.sandbox.processes import Processes
 
-__all__ = ["Ended", "LimitError", "WatchedProcess"]
+__all__ = ["Ended", "LimitError", "WatchedProcess", "disk_use"]
 
 POLL_S = 0.1
 _MEMORY_POLLS = 5
@@ -180,12 +180,12 @@ class WatchedProcess:
         """Raise LimitError for too many files, where no file system limits them."""
         if self._disk_folder is None:
             return
-        size, files = _disk_use(self._disk_folder)
+        size, files = disk_use(self._disk_folder)
         if size > self._limits.disk_mb * 1e6 or files > MAX_FILES:
             raise LimitError("disk limit", reason("disk limit", self._limits))
 
 
-def _disk_use(folder: Path) -> tuple[int, int]:
+def disk_use(folder: Path) -> tuple[int, int]:
     """Size of all files below a folder in bytes, and number of files and folders."""
     size = files = 0
     for parent, folders, names in os.walk(folder):

@@ -45,13 +45,15 @@ class RosbridgeTransport:
         *,
         token: str = "",
         waits: bool = True,
+        link: socket.socket | None = None,
     ) -> None:
         """`codec`: for servers that take no serialized messages; `report` gets lines for the user, from any thread.
 
-        `waits`: whether `start` waits for a server if there is none.
+        `waits`: whether `start` waits for a server if there is none. `link`: a connection of TCP with the server, which
+        is used first.
         """
         self._graph, self._url, self._codec, self._report, self._token = graph, url, codec, report, token
-        self._waits = waits
+        self._waits, self._link = waits, link
         self._loop: asyncio.AbstractEventLoop | None = None
         self._wake_event = asyncio.Event()
         self._is_woken = False
@@ -131,8 +133,10 @@ class RosbridgeTransport:
 
     async def _connect(self) -> None:
         headers = {"Authorization": f"Bearer {self._token}"} if self._token else {}
+        link, self._link = self._link, None
         async with connect(
             self._url,
+            sock=link,
             additional_headers=headers,
             compression=None,
             max_size=None,

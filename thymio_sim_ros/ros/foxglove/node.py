@@ -25,6 +25,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_msgs.msg import UInt32
 
+from thymio_sim_ros.access import AccessCheck
 from thymio_sim_ros.bridge import BridgeServer, ServerInfo, ServerSettings, Tokens
 from thymio_sim_ros.bridge.protocol.constants import CDR, JSON
 from thymio_sim_ros.bridge.protocol.messages import AssetResponse
@@ -130,6 +131,11 @@ class FoxgloveBridge:
         self._is_stopped = False
         self._sim_now_ns = 0
         self._build()
+
+    @property
+    def access_check(self) -> AccessCheck:
+        """Whether its server answers a request; only in the thread of the servers."""
+        return self._server.access
 
     @property
     def startup_message(self) -> str:

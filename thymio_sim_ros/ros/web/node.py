@@ -17,6 +17,7 @@ from rclpy.context import Context
 from rclpy.executors import Executor
 
 import thymio_sim_ros
+from thymio_sim_ros.access import AccessCheck
 from thymio_sim_ros.access.hosts import is_loopback
 from thymio_sim_ros.access.tokens import Tokens
 from thymio_sim_ros.files import resources
@@ -24,6 +25,8 @@ from thymio_sim_ros.missions import MissionError, documents
 from thymio_sim_ros.names.addresses import describe_urls
 from thymio_sim_ros.names.ports import FOXGLOVE_PORT, HTTP_PORT
 from thymio_sim_ros.network.settings import OFF
+from thymio_sim_ros.page_nodes.mount import mount
+from thymio_sim_ros.page_nodes.who import Who
 from thymio_sim_ros.ros.compat import dds_profile
 from thymio_sim_ros.ros.rclpy_ext import parameters
 from thymio_sim_ros.ros.rclpy_ext.node_runner import SPIN_SLICE_S, StartError, announce, run_main
@@ -60,6 +63,13 @@ class WebParams:
         "Addresses and networks of reverse proxies whose headers X-Forwarded-* are believed",
         fixed=True,
     )
+    nodes: str = param(
+        Who.LOCAL.value,
+        "Who may run ROS nodes that are written on the page: local (the user of this computer), all (with full access, "
+        "in isolation), none",
+        choices=tuple(Who),
+        fixed=True,
+    )
     notice: str = param("", "Text that the page shows to its readers until it is empty, as from a teacher")
     notice_link: str = param("", "Address that the page offers with the notice, also relative to the page")
     pupil: str = param("", "Name of the pupil whose page this is, which the page shows")
@@ -78,11 +88,13 @@ class WebPage:
         defaults: WebParams | None = None,
         tokens: Tokens | None = None,
         thread: ServerThread | None = None,
+        access: AccessCheck | None = None,
     ) -> None:
         """Start the server. Raises StartError if aiohttp is missing or the port cannot be used.
 
         `tokens` of the bridge are part of the printed address; None: those of the environment or of parameters.
         `thread`: that of other servers of this process, such as the bridge, which are then on the page's port, too.
+        `access`: the check of the bridge in this process, which then runs nodes of the page.
         """
         self._is_stopped = False
         self.node = parameter_node("web_ui", context=context)
@@ -99,6 +111,8 @@ class WebPage:
             self._thread.trust(self._trusted_proxies)
             try:
                 self._serve(has_bridge=thread is not None)
+                if access is not None:
+                    mount(self._thread, access, Who(self.params.nodes))
             except BaseException:
                 self._thread.close()
                 raise
