@@ -7,6 +7,7 @@ import http.client
 import json
 import os
 import signal
+import socket
 import sys
 import urllib.error
 import urllib.request
@@ -165,6 +166,22 @@ def test_a_message_beyond_all_limits_closes_the_connection(port: int) -> None:
         page.send({"op": "run", "text": "#" * 1_000_000})
         with pytest.raises(ConnectionClosed):
             page.next("ended")
+
+
+def test_a_node_that_is_slow_to_start_gets_its_connection(tmp_path: Path) -> None:
+    """Its connection is made before its interpreter starts; the ports of pages close those that are silent."""
+    with running(tmp_path) as (port, _), Page(port) as page:
+        page.send({"op": "run", "text": "import rclpy\nrclpy.init()\nprint(4)"})
+        node = until(lambda: processes_with("page_node.program"))[0]
+        os.kill(node, signal.SIGSTOP)
+        silent = socket.create_connection(("127.0.0.1", port))
+        silent.settimeout(PATIENCE_S)
+        assert silent.recv(1) == b""  # the time limit of silent connections is over
+        silent.close()
+        os.kill(node, signal.SIGCONT)
+        page.next("ready")
+        page.send({"op": "begin"})
+        assert page.rest()[0] == "4\n"
 
 
 # --- programs ---

@@ -25,8 +25,9 @@ def mount(thread: ServerThread, access: AccessCheck, who: Who) -> None:
 
     @cache
     def port() -> int:
-        """A port of loopback that only nodes use: it has no TLS, as they do not know the name in the certificate."""
-        return thread.listen("127.0.0.1", 0)[1]
+        """A port that only nodes use: without TLS, as they do not know the name in the certificate, and without time
+        limits, because a node is connected before its interpreter has started."""
+        return thread.listen_for_own()
 
     @cache
     def server() -> NodeServer:

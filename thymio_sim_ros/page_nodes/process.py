@@ -27,6 +27,8 @@ LEVELS = (*ISOLATED, "landlock", "limits") if sys.platform.startswith("linux") e
 """Those for the user of this computer, strongest first."""
 
 _SUPERVISOR = "thymio_sim_ros.cli.ros.page_node.supervisor"
+_NOT_CONNECTED = 2
+"""Exit code of a node that the bridge rejects, at any level."""
 _END_S = 15.0
 """Time in which a supervisor ends its node before it is killed."""
 _UNAVAILABLE = "this computer gives no isolation for programs of others"
@@ -110,7 +112,8 @@ class NodeProcess:
                 elif event["event"] == "unavailable":
                     return None, f"{event['reason']} {words}".strip()
                 elif event["event"] == "ended":
-                    if not is_ready and level != self._levels[-1] and not self._is_ending:
+                    is_isolation = not is_ready and event["code"] != _NOT_CONNECTED
+                    if is_isolation and level != self._levels[-1] and not self._is_ending:
                         return None, "".join(early)
                     for each in early:
                         self._report({"event": "output", "text": each})

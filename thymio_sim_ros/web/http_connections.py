@@ -270,7 +270,16 @@ def text_response(status: int, text: str, headers: Mapping[str, str] = MappingPr
 class HttpConnections:
     """The connections of all listening sockets of a server. Only for the thread of the event loop."""
 
-    def __init__(self, answer: Handler, max_connections: int, report: Report, loop: asyncio.AbstractEventLoop) -> None:
+    def __init__(
+        self,
+        answer: Handler,
+        max_connections: int,
+        report: Report,
+        loop: asyncio.AbstractEventLoop,
+        *,
+        is_patient: bool = False,
+    ) -> None:
+        """`is_patient`: for processes of this program, whose requests may take long on a busy machine."""
         self._log = logging.getLogger(__name__)
         self._log.setLevel(logging.CRITICAL)  # invalid requests are not logged; internal errors go to `report`
         self._loop = loop
@@ -278,7 +287,7 @@ class HttpConnections:
         """The open connections."""
         self._server = web.Server(answer, loop=loop)
         self._acceptor = _Acceptor(self._server, self.slots, report, self._log)
-        self._tasks = [self._loop.create_task(self._close_overdue())]
+        self._tasks = [] if is_patient else [self._loop.create_task(self._close_overdue())]
 
     def accept(self, listeners: Iterable[socket], tls: ssl.SSLContext | None = None) -> None:
         """Accept the connections of further sockets."""

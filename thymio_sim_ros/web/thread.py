@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 __all__ = ["ServerThread"]
 
+_MAX_OWN = 32
+"""Connections of processes of this program."""
 _CLOSE_TIMEOUT_S = 3.0
 """Longest time that `close` waits; the thread is a daemon."""
 
@@ -81,6 +83,21 @@ class ServerThread:
         self.call(lambda: self._connections.accept(listeners, tls))
         found = listeners[0].getsockname()
         return str(found[0]), int(found[1])
+
+    def listen_for_own(self) -> int:
+        """Serve a port of loopback, without TLS and time limits, for processes of this program; only in this thread.
+
+        Return its number.
+        """
+        from thymio_sim_ros.web.http_connections import HttpConnections
+
+        listeners = listen("127.0.0.1", 0)
+        self._listeners += listeners
+        answer = self.application.answer
+        connections = HttpConnections(answer, _MAX_OWN, self._report, self.loop, is_patient=True)
+        connections.accept(listeners)
+        self._closers.append(connections.close)
+        return int(listeners[0].getsockname()[1])
 
     def mount_bridge(self, bridge: BridgeServer) -> None:
         """Serve a bridge, whose loop must be that of the thread, to clients that ask for a WebSocket at `/`."""

@@ -104,7 +104,7 @@ def run_connected(
     from thymio_sim_ros.portable_ros.program import run_program
 
     connection = ExitStack()
-    connection.enter_context(connected(url, token, "node", waits=True, link=link))
+    connection.enter_context(connected(url, token, "node", waits=link is None, link=link))
     connection.enter_context(interruptible())
     atexit.register(connection.close)
     try:
