@@ -135,6 +135,7 @@ PARTS = {
     "program_tab/program_badge.js": "program",
     "program_tab/program_news.js": "program",
     "program_tab": "editor",
+    "python": "editor",
     "robot_tab": "robot",
     "sharing": "sharing",
     "shell": "stage",

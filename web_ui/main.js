@@ -18,6 +18,7 @@ import { localStore, tabStore } from "./browser/local_storage.js";
 import { MotionSetting } from "./browser/motion_setting.js";
 import { OpenedFile } from "./browser/opened_file.js";
 import { PageLanguage } from "./browser/page_language.js";
+import { isPython } from "./browser/python_name.js";
 import { robotNames } from "./browser/robot_names.js";
 import { exposeForTests } from "./browser/test_access.js";
 import { Theme } from "./browser/theme.js";
@@ -132,7 +133,7 @@ class Page {
     this.messageAt = new MessageAt(document.body);
     this.graphics = new GraphicsNotice(element("#trouble"), (key) => this.#pageText(key), this.redraw);
 
-    this.program = new ProgramHost({ slot: element("#panel-program"), client: () => this.client });
+    this.program = new ProgramHost({ slot: element("#panel-program"), client: () => this.client, token });
     this.creator = new CreatorHost({ element, scene: () => this.scene });
     this.mission = new MissionHost(element('[data-slot="mission"]'));
     this.share = new ShareHost({ token: token ?? "" });
@@ -338,7 +339,8 @@ class Page {
     const refuse = (words) => messageAt.show(place, [h("p", {}, words)], this.#pageText("notice.dismiss"));
     messageAt.hide();
     this.opened.note(file, place);
-    if (creator.isOpen && !isProgram(file)) creator.openFile(file, place);
+    if (isPython(file.name)) void program.openFile(file);
+    else if (creator.isOpen && !isProgram(file)) creator.openFile(file, place);
     else if (program.isOpen && isProgram(file)) void program.openFile(file);
     else {
       void program

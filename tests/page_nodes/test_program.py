@@ -12,6 +12,8 @@ def test_a_program_has_a_file_name_and_the_namespace_of_its_robot() -> None:
     assert program == NodeProgram("A node on the line.py", "import rclpy", "/thymio_1")
     assert program.arguments == ("--ros-args", "-r", "__ns:=/thymio_1")
     assert program_of({"text": ""}).arguments == ()
+    assert program_of({"text": "", "sim_time": True}).arguments == ("--ros-args", "-p", "use_sim_time:=true")
+    assert program_of({"text": "", "sim_time": "yes"}).arguments == ()
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,8 @@ function opened(text) {
 }
 
 test("the file decides to which language it belongs", () => {
-  assert.equal(languageOf(WITH_PICTURE, LANGUAGES), "picture");
-  assert.equal(languageOf(newAesl(), LANGUAGES), "text");
+  assert.equal(languageOf({ name: "a.aesl", text: WITH_PICTURE }, LANGUAGES), "picture");
+  assert.equal(languageOf({ name: "a.aesl", text: newAesl() }, LANGUAGES), "text");
 });
 
 test("a picture can be looked at as text, which is read only", () => {

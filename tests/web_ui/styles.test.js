@@ -8,7 +8,8 @@ const ROOT = new URL("../../web_ui/", import.meta.url);
 /** Lazily loaded parts: their sheet, and the files and folders that belong to them. */
 const PARTS = [
   { sheet: "blockly/view/blocks.css", own: ["blockly/view/"] },
-  { sheet: "editor/editor.css", own: ["editor/", "hosts/program_host.js"] },
+  { sheet: "editor/editor.css", own: ["editor/", "python/", "hosts/program_host.js"] },
+  { sheet: "python/python.css", own: ["python/", "hosts/program_host.js"] },
   { sheet: "program_tab/program.css", own: ["program_tab/", "hosts/program_host.js"] },
   { sheet: "class_tab/class_tab.css", own: ["class_tab/", "hosts/class_host.js"] },
   { sheet: "creator/creator.css", own: ["creator/", "hosts/creator_host.js"] },

@@ -29,15 +29,19 @@ class NodeProgram:
     name: str
     text: str
     namespace: str = ""
+    has_sim_time: bool = False
+    """Whether its nodes have the time of the simulator: a pause, steps and its pace hold for them, too."""
 
     @property
     def arguments(self) -> tuple[str, ...]:
         """The arguments of the program, as those of `ros2 run`."""
-        return ("--ros-args", "-r", f"__ns:={self.namespace}") if self.namespace else ()
+        namespace = ("-r", f"__ns:={self.namespace}") if self.namespace else ()
+        time = ("-p", "use_sim_time:=true") if self.has_sim_time else ()
+        return ("--ros-args", *namespace, *time) if namespace or time else ()
 
 
 def program_of(message: Mapping[Any, Any]) -> NodeProgram:
-    """The program of a message: `text`, perhaps `name` of its file and `namespace`. Raises ProgramRefusedError."""
+    """The program of a message: `text`, perhaps `name`, `namespace` and `sim_time`. Raises ProgramRefusedError."""
     text, name, namespace = message.get("text"), message.get("name", _DEFAULT_NAME), message.get("namespace", "")
     if not isinstance(text, str):
         raise ProgramRefusedError("found no text, expected a program in Python")
@@ -54,4 +58,4 @@ def program_of(message: Mapping[Any, Any]) -> NodeProgram:
     if not isinstance(namespace, str) or not _NAMESPACE.fullmatch(namespace):
         raise ProgramRefusedError(f"found namespace {str(namespace)[:40]!r}, expected one such as /thymio_1")
     is_name = isinstance(name, str) and _NAME.fullmatch(name)
-    return NodeProgram(name if is_name else _DEFAULT_NAME, text, namespace)
+    return NodeProgram(name if is_name else _DEFAULT_NAME, text, namespace, message.get("sim_time") is True)

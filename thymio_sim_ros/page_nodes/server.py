@@ -1,9 +1,10 @@
 """The WebSocket `page-node`, by which a page runs one node at a time, and `page-node.json`: whether it may.
 
 The page sends                        it gets
-{"op": "run", "text", "name", "namespace"}   {"op": "ready", "level"}: the program waits for `begin`
-{"op": "begin"}                       {"op": "output", "text"}
-{"op": "stop"}                        {"op": "ended", "code", "reason", "text"}
+{"op": "run", "text", "name",         {"op": "ready", "level"}: the program waits for `begin`
+ "namespace", "sim_time"}             {"op": "output", "text"}
+{"op": "begin"}                       {"op": "ended", "code", "reason", "text"}
+{"op": "stop"}
 
 `reason` is "" for a program that has ended by itself or was stopped, else `memory`, `disk`, `isolation` (there is
 none), `replaced` (by another page), `refused` (no program), `tooMany` or `lost` (an internal error); `text` says more

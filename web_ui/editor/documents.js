@@ -1,11 +1,12 @@
-// One edited program: a whole .aesl file and the node whose code is shown. Immutable values, no DOM.
+// One edited program: a whole .aesl file and the node whose code is shown, or a file of Python. Immutable values, no DOM.
 
+import { isPython } from "../browser/python_name.js";
 import { looksLikeAesl, newAesl, readAesl, withCode, withEntry, withLast } from "./aesl.js";
 
 /**
  * @typedef {object} Document
  * @property {string} name
- * @property {string} text            content of the .aesl file as it would be saved
+ * @property {string} text            content of the file as it would be saved
  * @property {number} node            index of the node that is shown
  * @property {string} saved           text when last opened, saved or read from a robot
  * @property {string | null} loaded   text when last loaded into or read from a robot; null: never
@@ -17,7 +18,7 @@ export const UNTITLED = "program.aesl";
 
 /** @param {string} [name] @returns {Document} */
 export function blank(name = UNTITLED) {
-  const text = newAesl();
+  const text = isPython(name) ? "" : newAesl();
   return { name, text, node: 0, saved: text, loaded: null, source: null, own: false };
 }
 
@@ -29,6 +30,10 @@ export function blank(name = UNTITLED) {
  * @returns {Document}
  */
 export function opened(name, text) {
+  if (isPython(name)) {
+    const plain = text.replace(/^\uFEFF/, "").replaceAll("\r\n", "\n");
+    return { name, text: plain, node: 0, saved: plain, loaded: null, source: null, own: true };
+  }
   const wrapped = looksLikeAesl(text) ? text : newAesl(text.replaceAll("\r\n", "\n"));
   const { nodes } = readAesl(wrapped);
   const whole =
@@ -51,17 +56,19 @@ export function fromRobot({ name, file, node = "" }) {
 }
 
 /** @param {Document} document @returns {string} */
-export function codeOf({ text, node }) {
-  return readAesl(text).nodes[node].code;
+export function codeOf({ name, text, node }) {
+  return isPython(name) ? text : readAesl(text).nodes[node].code;
 }
 
 /** @param {Document} document @param {string} code @returns {Document} */
 export function edited(document, code) {
+  if (isPython(document.name)) return { ...document, text: code };
   return { ...document, text: withCode(document.text, document.node, code) };
 }
 
 /** The document with another text of the whole file. @param {Document} document @param {string} text @returns {Document} */
 export function rewritten(document, text) {
+  if (isPython(document.name)) return { ...document, text };
   return { ...document, text, node: Math.min(document.node, Math.max(readAesl(text).nodes.length - 1, 0)) };
 }
 
@@ -89,5 +96,5 @@ export function isInRobot({ text, loaded }) {
 /** Convert a name to a valid file name. @param {string} name */
 export function fileName(name) {
   const clean = name.replace(/^.*[/\\]/, "").replace(/[<>:"|?*\u0000-\u001f]/g, "_");
-  return /\.aesl$/i.test(clean) ? clean : `${clean.replace(/\.(aseba|txt)$/i, "") || "program"}.aesl`;
+  return /\.aesl$/i.test(clean) || isPython(clean) ? clean : `${clean.replace(/\.(aseba|txt)$/i, "") || "program"}.aesl`;
 }

@@ -24,7 +24,8 @@ import { Navigation } from "./navigation.js";
 import { ProgramChecker } from "./program_checker.js";
 import { signatureHelp } from "./signature.js";
 import { skeletonText } from "./skeletons.js";
-import { TextField } from "./text.js";
+import { asebaText, FIELDS } from "./text.js";
+import { TextField } from "./text_field.js";
 import { toolbox } from "./tools/index.js";
 import { ALL } from "./workspace.js";
 
@@ -63,24 +64,27 @@ class TextView {
     this.text = new TextField({
       parent: code,
       kept: session.texts,
-      label: t("editor.code"),
-      phrases: PHRASES[language] ?? {},
-      vocabulary: () => this.#vocabulary(),
       isReadOnly: () => choice.isReadOnly,
-      changed: (content) => {
-        workspace.edit(content);
-        this.guide.typed();
-        this.checker.checkSoon();
-        redraw();
-      },
-      toggleBreakpoint: (line) => void this.markers.toggle(line),
       repairLabel: (content, repair) => repairLabel(t, content, repair),
-      correct: () => this.guide.correct(),
-      extensions: [
-        mistakeCard({ t, correct: () => this.guide.correct() }),
-        signatureHelp((name) => this.#native(name)),
-        this.navigation.extension,
-      ],
+      fields: FIELDS,
+      extensions: asebaText({
+        label: t("editor.code"),
+        phrases: PHRASES[language] ?? {},
+        vocabulary: () => this.#vocabulary(),
+        changed: (content) => {
+          workspace.edit(content);
+          this.guide.typed();
+          this.checker.checkSoon();
+          redraw();
+        },
+        toggleBreakpoint: (line) => void this.markers.toggle(line),
+        correct: () => this.guide.correct(),
+        extensions: [
+          mistakeCard({ t, correct: () => this.guide.correct() }),
+          signatureHelp((name) => this.#native(name)),
+          this.navigation.extension,
+        ],
+      }),
     });
     const { view } = this.text;
     this.markers = new DebugMarkers({

@@ -23,7 +23,7 @@ export class MistakeGuide {
   /**
    * @param {object} options
    * @param {import("../i18n/index.js").Translate} options.t
-   * @param {() => import("./text.js").TextField} options.text
+   * @param {() => import("./text_field.js").TextField} options.text
    * @param {ReturnType<typeof import("./foot.js").footOf>} options.foot
    * @param {(text: string) => void} options.announce
    */

@@ -1,5 +1,6 @@
 // The open programs, one per tab: which robot runs which, and the drafts in browser storage. No DOM.
 
+import { isPython } from "../browser/python_name.js";
 import { AeslError, readAesl } from "./aesl.js";
 import {
   blank,
@@ -20,6 +21,8 @@ import {
 
 /** The tab of the program for all robots; other tabs are named after their robot. */
 export const ALL = "*";
+/** What a file has that is none of Aseba. */
+const NO_FILE = readAesl("<network/>");
 
 export class Workspace {
   /**
@@ -54,9 +57,10 @@ export class Workspace {
     return isInRobot(this.current);
   }
 
-  /** The parsed file of the current text. */
+  /** The parsed file of the current text; without nodes for one in Python. */
   get file() {
-    const { text } = this.current;
+    const { name, text } = this.current;
+    if (isPython(name)) return NO_FILE;
     if (this.parsed?.text !== text) this.parsed = readAesl(text);
     return this.parsed;
   }
@@ -143,9 +147,9 @@ export class Workspace {
     const kept = [...this.fileStore.recent(), ...this.drafts.values()];
     const open = [...this.documents].filter(([tab, document]) => tab !== this.tab || isUnsaved(document));
     const taken = new Set([...kept, ...open.map(([, document]) => document)].map(({ name }) => name.toLowerCase()));
-    const base = fileName(title).replace(/\.aesl$/i, "");
-    let name = `${base}.aesl`;
-    for (let number = 2; taken.has(name.toLowerCase()); number++) name = `${base} ${number}.aesl`;
+    const [, base, ending] = /** @type {RegExpExecArray} */ (/^(.*)(\.\w+)$/.exec(fileName(title)));
+    let name = base + ending;
+    for (let number = 2; taken.has(name.toLowerCase()); number++) name = `${base} ${number}${ending}`;
     return name;
   }
 
@@ -215,7 +219,9 @@ export class Workspace {
 
   /** @param {string} name */
   rename(name) {
-    this.#set({ ...this.current, name: fileName(name) });
+    const { current } = this;
+    const isSame = isPython(name) === isPython(current.name);
+    this.#set({ ...current, name: fileName(isSame ? name : `${name}${isPython(current.name) ? ".py" : ".aesl"}`) });
   }
 
   saved() {

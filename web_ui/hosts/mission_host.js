@@ -8,14 +8,12 @@ import { fetchMissions } from "../missions/steps.js";
 import { disabledReason } from "../state/disabled_reason.js";
 import { attemptOf, CONNECTION } from "../state/index.js";
 import { missionText } from "../state/mission.js";
-import { editorsOf } from "./program_host.js";
+import { editorsOf, NODE } from "./program_host.js";
 
 /** @typedef {import("../shell/context.js").Context} Context */
 /** @typedef {import("../state/index.js").State} State */
 /** @typedef {typeof import("../missions/index.js")} Module */
 
-/** The language of a mission that has no editor in the page. */
-const NODE = "ros";
 const LARGEST_MISSION = 20_000_000;
 const MB = 1_000_000;
 
@@ -26,6 +24,7 @@ export class MissionHost {
   /** @type {InstanceType<Module["MissionCard"]> | null} */ #card = null;
   /** The mission that is shown. */ #name = "";
   /** @type {string | null} */ #language = null;
+  /** Whether the page runs nodes; false until it is known. */ #runsNodes = false;
   /** Name of the document with the pupil's program. */ #document = "";
   /** Number of the try whose result was noted. */ #noted = "";
 
@@ -114,6 +113,7 @@ export class MissionHost {
       t: this.#module.missionTranslator(context.language),
       slot: this.slot,
       language: () => this.#language,
+      runsNodes: () => this.#runsNodes,
       commands: {
         program: (language) => void this.#program(language),
         step: () => this.#step(),
@@ -134,6 +134,7 @@ export class MissionHost {
   /** Another mission is open. @param {import("../state/mission.js").Mission} mission */
   #begin(mission) {
     this.#name = mission.name;
+    this.#context?.program.node?.leave();
     this.#document = "";
     this.#noted = "";
     const kept = this.progress.language(mission.name);
@@ -152,7 +153,11 @@ export class MissionHost {
     this.progress.keepLanguage(mission.name, language);
     if (mission.robot in robots) context.store.dispatch({ type: "select", robot: mission.robot });
     context.scene.invalidate();
-    if (language === NODE) return;
+    if (language === NODE) {
+      this.#runsNodes = await context.program.mayRunNodes();
+      context.scene.invalidate();
+      if (!this.#runsNodes || this.#language !== NODE || this.#name !== mission.name) return;
+    }
     const text = this.progress.program(mission.name, language) ?? mission.programs[language] ?? null;
     this.#document = ""; // until the program is open: what is written now belongs to another one
     const { toolbox } = mission;
@@ -167,7 +172,7 @@ export class MissionHost {
     const kind = this.#language ?? "";
     const solution = store.state.mission?.solutions[kind];
     if (this.#module === null || solution === undefined) return null;
-    return this.#module.nextStep({ kind, solution, own: kind === NODE ? "" : program.text, language });
+    return this.#module.nextStep({ kind, solution, own: kind === NODE && !this.#runsNodes ? "" : program.text, language });
   }
 
   /** Keep what the pupil has written. @param {string} document @param {string} text */
@@ -178,7 +183,8 @@ export class MissionHost {
 
   /** Begin another try, with the same program. */
   async #again() {
-    const { actions, store } = /** @type {Context} */ (this.#context);
+    const { actions, store, program } = /** @type {Context} */ (this.#context);
+    if (this.#language === NODE && this.#runsNodes && !program.node?.isRunning) return program.run();
     await actions.reset();
     if (store.state.simulator?.paused) await actions.pause(false);
   }

@@ -9,6 +9,7 @@
 import { BLOCKS, looksLikeBlocks } from "../blockly/language.js";
 import { followLocalStore, localStore } from "../browser/local_storage.js";
 import { meetOtherTabs, openPages } from "../browser/other_tabs.js";
+import { isPython } from "../browser/python_name.js";
 import { textOf } from "../browser/text_file.js";
 import { looksLikeToolbox } from "../editor/toolbox_file.js";
 import { importerOf, languageOf, LanguageChoice, TEXT } from "../program_tab/language_choice.js";
@@ -17,6 +18,7 @@ import { holdsVpl } from "../vpl/holds.js";
 
 /** @typedef {import("../editor/editor_session.js").EditorSession} EditorSession */
 /** @typedef {import("../program_tab/tab.js").ProgramTab} ProgramTab */
+/** @typedef {import("../python/node_client.js").NodeClient} NodeClient */
 /** @typedef {import("../shell/context.js").Context} Context */
 /**
  * A language's view of the open document. It edits by `session.workspace.edit(code)` or, if the language owns more than
@@ -36,6 +38,14 @@ import { holdsVpl } from "../vpl/holds.js";
  * @property {() => Promise<void>} loaded     the robot has the document now
  * @property {() => void} focus
  * @property {() => void} destroy
+ * @property {Runner} [runner]                runs and stops the program, in place of the robot
+ */
+/**
+ * @typedef {object} Runner
+ * @property {() => Promise<void>} run
+ * @property {() => void} stop
+ * @property {() => boolean} isRunning
+ * @property {() => string} reason    why it cannot run; "": it can
  */
 /** @typedef {(parts: import("../program_tab/tab.js").Parts) => ProgramView} CreateView */
 /** @typedef {import("../ui/icons.js").IconName} IconName */
@@ -52,14 +62,18 @@ import { holdsVpl } from "../vpl/holds.js";
  * @typedef {object} Language   its name is the text `language.<id>`, `language.<id>.text` says what it is
  * @property {string} id
  * @property {IconName} icon
- * @property {(text: string) => boolean} holds    whether a file is a program of this language, cheaply; the first one
- *   that does counts
+ * @property {(text: string, name?: string) => boolean} holds    whether a file is a program of this language, cheaply;
+ *   the first one that does counts
+ * @property {string} [ending]                    of the names of its files; else .aesl
  * @property {readonly Sample[]} samples          programs to begin with
  * @property {readonly { name: string, key: string }[]} [more]   further samples, which have a title only
  * @property {readonly string[]} [imports]        endings of files of other programs, such as ".sb3"
  * @property {() => Promise<LanguageModule>} load
  * @property {() => Promise<readonly string[]>} [toolboxNames]   what a teacher's file can hide, and modes
  */
+
+/** The language of ROS nodes in Python, which the suite runs. */
+export const NODE = "ros";
 
 /** The languages of programs, in display order. To add one: a line here. @type {readonly Language[]} */
 export const LANGUAGES = [
@@ -80,7 +94,7 @@ export const LANGUAGES = [
   {
     id: TEXT,
     icon: "text",
-    holds: () => true,
+    holds: (_text, name = "") => !isPython(name),
     samples: [
       { name: "button", key: "button", icon: "pad" },
       { name: "avoid", key: "avoid", icon: "beams" },
@@ -88,6 +102,17 @@ export const LANGUAGES = [
       { name: "empty", key: "empty", icon: "file" },
     ],
     load: () => import("../editor/index.js"),
+  },
+  {
+    id: NODE,
+    icon: "plug",
+    ending: ".py",
+    holds: (_text, name = "") => isPython(name),
+    samples: [
+      { name: "first", key: "ros_first", icon: "beams" },
+      { name: "empty", key: "ros_empty", icon: "file" },
+    ],
+    load: () => import("../python/index.js"),
   },
 ];
 
@@ -112,16 +137,20 @@ export class ProgramHost {
   /** @type {typeof import("../program_tab/tab.js") | null} */ #module = null;
   /** The language whose view is wanted: loading it takes a while. */ #wanted = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #draftTimer = undefined;
+  /** Done when it is known what the page may do with nodes. */ #learned = Promise.resolve();
   /** @type {{ name: string, text: string } | null} opened when the tab is shown */ #kept = null;
 
   /**
    * @param {object} options
    * @param {HTMLElement} options.slot   the panel of the tab
    * @param {() => import("../protocol/client.js").Client} options.client
+   * @param {string} [options.token]
    */
-  constructor({ slot, client }) {
+  constructor({ slot, client, token = "" }) {
     this.slot = slot;
     this.client = client;
+    this.token = token;
+    /** @type {NodeClient | null} the nodes of this page, once the tab is loaded */ this.node = null;
     /** Whether the tab is shown. */
     this.isOpen = false;
     /** @type {EditorSession | null} */ this.session = null;
@@ -166,8 +195,8 @@ export class ProgramHost {
   /** The program that the tab has open, with its language; null if the tab cannot be loaded. */
   async openProgram() {
     if (!(await this.#load()) || this.session === null) return null;
-    const { text } = this.session.workspace.current;
-    return { text, language: languageOf(text, LANGUAGES) };
+    const { name, text } = this.session.workspace.current;
+    return { text, language: languageOf({ name, text }, LANGUAGES) };
   }
 
   /** Open the tab with a program. @param {string} name @param {string} text */
@@ -268,7 +297,7 @@ export class ProgramHost {
       const session = new module.EditorSession(localStore, Date.now, openPages(navigator.locks));
       this.session = session;
       session.onWritten = (text) => {
-        this.#sendDraft(text);
+        if (!isPython(session.workspace.current.name)) this.#sendDraft(text); // a draft is an .aesl file
         this.onWritten(session.workspace.current.name, text);
       };
       followLocalStore((key) => session.workspace.storageChanged(key));
@@ -277,8 +306,30 @@ export class ProgramHost {
         store.dispatch({ type: "notice", level: "warning", text: text("program")("program.otherTab") });
       });
     }
+    this.node ??= this.#newNode(module);
     this.choice ??= new LanguageChoice({ workspace: this.session.workspace, languages: LANGUAGES });
     return true;
+  }
+
+  /** @param {typeof import("../program_tab/tab.js")} module */
+  #newNode({ NodeClient }) {
+    const node = new NodeClient({ page: location.href, token: this.token, changed: () => this.redraw() });
+    const { actions } = /** @type {Context} */ (this.context);
+    actions.node = node;
+    this.#learned = node.learn();
+    return node;
+  }
+
+  /** Whether the page may run nodes; loads the tab. */
+  async mayRunNodes() {
+    if (!(await this.#load())) return false;
+    await this.#learned;
+    return this.node?.mayRun ?? false;
+  }
+
+  /** Run the open program. */
+  async run() {
+    await (await this.#opened())?.commands.run();
   }
 
   /** @param {string} text */
@@ -306,10 +357,12 @@ export class ProgramHost {
 
   #build() {
     if (this.#module === null || this.session === null || this.choice === null || this.context === null) return;
+    if (this.node === null) return;
     this.tab?.destroy();
     this.tab = new this.#module.ProgramTab({
       session: this.session,
       choice: this.choice,
+      node: this.node,
       context: this.context,
       languages: LANGUAGES,
       load: (language) => this.#imported(language.load),

@@ -189,7 +189,7 @@ function forgetShared() {
 function describe({ kind, name }, text, { t, languageName }) {
   if (kind === "program") {
     const lines = (text ?? "").trim().split("\n").length;
-    return { title: name, meta: t("meta.program", { language: languageName(languageOf(text ?? "", LANGUAGES)), lines }) };
+    return { title: name, meta: t("meta.program", { language: languageName(languageOf({ name, text: text ?? "" }, LANGUAGES)), lines }) };
   }
   return { title: titleIn(text ?? "") || name, meta: t(`meta.${kind}`) };
 }

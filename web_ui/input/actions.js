@@ -72,6 +72,7 @@ export class Actions {
     this.language = language;
     this.now = now;
     this.later = later;
+    /** @type {import("../python/node_client.js").NodeClient | null} the ROS node of this page */ this.node = null;
     /** @type {Map<string, number>} time of the press, by topic of the button */ this.pressTimes = new Map();
     /** @type {Map<string, readonly string[]>} robots on which the pad holds a button, by button */ this.held = new Map();
   }
@@ -131,6 +132,7 @@ export class Actions {
 
   /** Stop the addressed robots: their programs, and their wheels. */
   async stop() {
+    this.node?.stop();
     const { services, robots } = this.store.state;
     const stops =
       this.owner === null ? services.filter((name) => name.endsWith("/aseba/stop")) : [this.programService("stop")];
@@ -171,8 +173,11 @@ export class Actions {
     await this.call("/simulator/step");
   }
 
-  reset() {
-    return this.call("/simulator/reset");
+  /** Reset the world. The node of this page begins anew, as programs of robots do. */
+  async reset() {
+    const { node } = this;
+    if (node?.isRunning) node.again(() => this.call("/simulator/reset"));
+    else await this.call("/simulator/reset");
   }
 
   /** @param {number} factor  1: real time */

@@ -70,13 +70,15 @@ export class MissionCard {
    * @param {HTMLElement} options.slot
    * @param {Commands} options.commands
    * @param {() => string | null} options.language   of the pupil's program
+   * @param {() => boolean} options.runsNodes   whether ROS nodes are written and run on the page
    */
-  constructor({ context, t, slot, commands, language }) {
+  constructor({ context, t, slot, commands, language, runsNodes }) {
     this.context = context;
     this.t = t;
     this.slot = slot;
     this.commands = commands;
     this.language = language;
+    this.runsNodes = runsNodes;
     this.title = h("h2", { class: "mission-title", id: "mission-title" });
     this.count = h("span", { class: "mission-count" });
     this.time = h("span", { class: "mission-time" });
@@ -127,7 +129,7 @@ export class MissionCard {
     this.#fold(attempt);
     this.#showValues(attempt);
     const { measured, at_s: _at, ...reached } = attempt ?? { measured: {}, at_s: 0 };
-    const key = JSON.stringify([mission.name, reached, Object.keys(measured), this.language(), this.#step, this.#hints, state.connection, this.context.language]);
+    const key = JSON.stringify([mission.name, reached, Object.keys(measured), this.language(), this.runsNodes(), this.#step, this.#hints, state.connection, this.context.language]);
     if (key === this.#key) return;
     this.#key = key;
     this.#show(mission, attempt);
@@ -250,7 +252,7 @@ export class MissionCard {
         t(`with.${id}`),
       ),
     );
-    const node = chosen === "ros" ? [h("p", { class: "small" }, t("ros.text")), h("pre", { class: "mission-command", tabindex: "0" }, NODE), this.#startButton()] : [];
+    const node = chosen === "ros" && !this.runsNodes() ? [h("p", { class: "small" }, t("ros.text")), h("pre", { class: "mission-command", tabindex: "0" }, NODE), this.#startButton()] : [];
     return h(
       "div",
       { class: "mission-languages" },

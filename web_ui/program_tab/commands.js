@@ -2,6 +2,7 @@
 
 import { download } from "../browser/download.js";
 import { kindOf, sentenceOf } from "../browser/foreign_files.js";
+import { isPython } from "../browser/python_name.js";
 import { textOf } from "../browser/text_file.js";
 import { looksLikeToolbox, readToolbox, unknownNames, WHOLE } from "../editor/toolbox_file.js";
 import { isExample } from "../examples/index.js";
@@ -92,7 +93,7 @@ export class ProgramCommands {
     if (module === null) return;
     const text = module.sampleText(name, this.t);
     this.choice.forget();
-    this.workspace.begin(titleOfSample(language, name, this.t), text);
+    this.workspace.begin(titleOfSample(language, name, this.t) + (language.ending ?? ""), text);
     this.back();
   }
 
@@ -109,7 +110,7 @@ export class ProgramCommands {
     const module = text === null ? await this.loadLanguage(language) : null;
     if (text === null && module === null) return "";
     this.choice.forget();
-    this.workspace.show(title, text ?? module?.sampleText(sample, this.t) ?? "");
+    this.workspace.show(title + (language.ending ?? ""), text ?? module?.sampleText(sample, this.t) ?? "");
     this.back();
     return this.workspace.current.name;
   }
@@ -164,7 +165,8 @@ export class ProgramCommands {
     const kind = size > LARGEST_IMPORT ? "" : kindOf(new Uint8Array(await chosen.arrayBuffer()));
     const importer = importerOf(BLOCKS.includes(kind) ? { name: IMPORTED } : chosen, this.languages);
     if (importer !== null && ["", ...BLOCKS].includes(kind)) return this.#import(chosen, importer);
-    if (!["", "program", "json"].includes(kind)) {
+    const isNode = isPython(name) && ["ros", "python"].includes(kind);
+    if (!["", "program", "json"].includes(kind) && !isNode) {
       return this.report(`${name}: ${sentenceOf(kind, this.language)}`, "error");
     }
     if (size > LARGEST_PROGRAM) return this.report(this.t("editor.tooLarge", { name }), "error");
@@ -233,7 +235,7 @@ export class ProgramCommands {
 
   save() {
     const { name, text } = this.workspace.current;
-    download(name, text, "application/xml");
+    download(name, text, isPython(name) ? "text/x-python" : "application/xml");
     this.workspace.saved();
     this.redraw();
   }
@@ -272,6 +274,8 @@ export class ProgramCommands {
   /** Run the program from its beginning; it is loaded if the robots have another one. */
   async run() {
     if (this.#isBlocked()) return;
+    const runner = this.view()?.runner;
+    if (runner !== undefined) return runner.reason() === "" ? runner.run() : undefined;
     if (!this.workspace.isInRobot) return void (await this.load());
     const robots = this.selection.controlled;
     await Promise.all(robots.map((name) => this.runtime.control(name, "reset"))); // refused by one that is off
@@ -280,6 +284,7 @@ export class ProgramCommands {
 
   /** Go on from where the program is halted; else run it. */
   async goOn() {
+    if (this.view()?.runner !== undefined) return this.run();
     const isHalted = this.workspace.isInRobot && this.selection.status?.state === "paused";
     await (isHalted ? this.control("run") : this.run());
   }
@@ -294,12 +299,16 @@ export class ProgramCommands {
 
   /** @param {Verb} verb */
   async control(verb) {
+    const runner = this.view()?.runner;
+    if (runner !== undefined) return verb === "stop" ? runner.stop() : undefined;
     const answers = await Promise.all(this.selection.controlled.map((name) => this.runtime.control(name, verb)));
     if (answers.some(({ ok }) => !ok)) this.report(this.t("editor.notNow"), "error");
   }
 
   /** Whether a robot of the tab offers this service. @param {Verb} verb */
   can(verb) {
+    const runner = this.view()?.runner;
+    if (runner !== undefined) return verb === "stop" && runner.isRunning();
     const { services } = this.selection.store.state;
     return this.selection.controlled.some((name) => services.includes(robotTopic(name, `aseba/${verb}`)));
   }

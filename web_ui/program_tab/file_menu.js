@@ -1,12 +1,13 @@
 // The file of the program: its name, new, open, save, load, and what the language adds. A sheet beside its button.
 
+import { isPython } from "../browser/python_name.js";
 import { WHOLE } from "../editor/toolbox_file.js";
 import { buttonOf, fileButton, h, lock, setAttribute, setText } from "../ui/dom.js";
 import { icon } from "../ui/icons.js";
 import { makeSheet } from "../ui/sheet.js";
 
 /** Files of programs and of what languages import, as a file dialog offers them. @param {import("./commands.js").ProgramCommands} commands */
-export const acceptedFiles = ({ imports }) => [".aesl", ".aseba", ".txt", ".json", ...imports].join();
+export const acceptedFiles = ({ imports }) => [".aesl", ".aseba", ".txt", ".json", ".py", ...imports].join();
 
 /** @typedef {import("../i18n/index.js").Translate} Translate */
 /** @typedef {import("../editor/workspace.js").Workspace} Workspace */
@@ -77,6 +78,7 @@ export function fileMenu({ t, session, commands, share, redraw }) {
     render({ reason, isUnsaved, hasMistake }) {
       button.render(workspace.current.name, isUnsaved);
       allBlocks.hidden = session.toolbox === WHOLE;
+      load.hidden = isPython(workspace.current.name); // nodes are in no robot
       lock(load, reason || (hasMistake ? t("editor.runBlocked") : ""));
       name.render();
       nodes.render();

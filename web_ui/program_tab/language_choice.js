@@ -1,6 +1,8 @@
 // In which language the open document is shown. The file decides: one with a picture or blocks belongs to the language
 // that made them, any other file to text. No DOM.
 
+import { isPython } from "../browser/python_name.js";
+
 /** @typedef {import("../hosts/program_host.js").Language} Language */
 /** @typedef {import("../editor/workspace.js").Workspace} Workspace */
 /**
@@ -28,12 +30,12 @@ export const TEXT = "text";
  * The language that a file belongs to: the first one that holds it.
  *
  * @template {Pick<Language, "id" | "holds">} L
- * @param {string} text
+ * @param {{ name: string, text: string }} file
  * @param {readonly L[]} languages
  * @returns {string}
  */
-export function languageOf(text, languages) {
-  return languages.find(({ holds }) => holds(text))?.id ?? TEXT;
+export function languageOf({ name, text }, languages) {
+  return languages.find(({ holds }) => holds(text, name))?.id ?? TEXT;
 }
 
 /**
@@ -66,7 +68,7 @@ export class LanguageChoice {
 
   /** The language that the document belongs to. */
   get made() {
-    return languageOf(this.workspace.current.text, this.languages);
+    return languageOf(this.workspace.current, this.languages);
   }
 
   /** The language in which it is shown. */
@@ -101,7 +103,7 @@ export class LanguageChoice {
    */
   choose(language) {
     this.#isAsking = false;
-    if (language === this.made || language === TEXT) {
+    if (language === this.made || (language === TEXT && !isPython(this.workspace.current.name))) {
       this.#asText = language === this.made ? "" : this.#document;
       return "shown";
     }

@@ -1,5 +1,6 @@
 // A program as a small picture: the first lines of its text, too small to be read but different for each program.
 
+import { isPython } from "../browser/python_name.js";
 import { AeslError, readAesl } from "../editor/aesl.js";
 import { h } from "../ui/dom.js";
 import { pieces } from "./marked_text.js";
@@ -7,12 +8,12 @@ import { pieces } from "./marked_text.js";
 const LINES = 12;
 const COLUMNS = 40;
 
-/** @param {string} text  of an .aesl file */
-export function miniature(text) {
+/** @param {{ name: string, text: string }} file */
+export function miniature({ name, text }) {
   return h(
     "span",
     { class: "program-miniature", "aria-hidden": "true" },
-    ...firstLines(text).map((line) =>
+    ...firstLines(text, name).map((line) =>
       h("span", {}, ...pieces(line).map(({ look, text: part }) => (look === "" ? part : h("span", { class: `program-code-${look}` }, part)))),
     ),
   );
@@ -22,12 +23,13 @@ export function miniature(text) {
  * The first lines of the code that say something.
  *
  * @param {string} text
+ * @param {string} [name]   of the file
  * @returns {string[]}
  */
-export function firstLines(text) {
-  let code = "";
+export function firstLines(text, name = "") {
+  let code = isPython(name) ? text : "";
   try {
-    code = readAesl(text).nodes.map((node) => node.code).join("\n");
+    if (code === "") code = readAesl(text).nodes.map((node) => node.code).join("\n");
   } catch (error) {
     if (!(error instanceof AeslError)) throw error;
   }

@@ -163,7 +163,7 @@ function languageSign({ t, languages }, id) {
 
 /** One of the last programs. @param {StartOptions} options @param {StoredFile} kept */
 function recentCard({ commands, languages, draftLabel, timeLabel }, kept) {
-  const language = languages.find(({ id }) => id === languageOfFile(kept.text, languages));
+  const language = languages.find(({ id }) => id === languageOfFile(kept, languages));
   const sign = language === undefined ? [] : [icon(language.icon, { small: true })];
   const attributes = {
     type: "button",
@@ -179,7 +179,7 @@ function recentCard({ commands, languages, draftLabel, timeLabel }, kept) {
     h(
       "button",
       attributes,
-      h("span", { class: "program-picture" }, miniature(kept.text), ...sign),
+      h("span", { class: "program-picture" }, miniature(kept), ...sign),
       h("b", {}, kept.name.replace(/\.aesl$/i, "")),
       h("small", {}, timeLabel(kept.time), unsaved),
     ),

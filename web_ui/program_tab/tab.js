@@ -1,6 +1,7 @@
 // What all languages of programs share: the head with run and stop, the menu of the file, the badge, drafts, and the
 // ways to begin a program. The language itself is a view (hosts/program_host.js).
 
+import { isPython } from "../browser/python_name.js";
 import { isInRobot, isUnsaved } from "../editor/documents.js";
 import { HelpTexts } from "../editor/help_texts.js";
 import { RobotSelection } from "../editor/robot_selection.js";
@@ -25,6 +26,10 @@ import { StartPage } from "./start_page.js";
 import "./program.css";
 
 export { EditorSession } from "../editor/editor_session.js";
+export { NodeClient } from "../python/node_client.js";
+
+/** The language of ROS nodes. */
+const NODE = "ros";
 
 /** Narrower tabs have the menu of the file in the head, as the tabs leave no room for it. */
 const WIDE_PX = 640;
@@ -40,6 +45,7 @@ const WIDE_PX = 640;
  * @property {import("./language_choice.js").LanguageChoice} choice   whether the text is made from a picture
  * @property {RobotSelection} selection
  * @property {ProgramCommands} commands
+ * @property {import("../python/node_client.js").NodeClient} node   the ROS node of this page
  * @property {() => void} redraw
  */
 
@@ -56,16 +62,19 @@ export class ProgramTab {
    * @param {import("../shell/context.js").Context} options.context
    * @param {readonly import("../hosts/program_host.js").Language[]} options.languages
    * @param {import("./language_choice.js").LanguageChoice} options.choice
+   * @param {import("../python/node_client.js").NodeClient} options.node
    * @param {(language: Language) => Promise<LanguageModule | null>} options.load
    * @param {(id: string) => void} options.show   shows the document in a language, by `setView`
    */
-  constructor({ session, choice, context, languages, load, show }) {
+  constructor({ session, choice, node, context, languages, load, show }) {
     const { store, language, actions, announce } = context;
     const t = translator(language, WORDS);
     this.session = session;
     this.choice = choice;
+    this.node = node;
     this.show = show;
     this.context = context;
+    this.languages = languages;
     this.t = t;
     this.pageText = context.text("page");
     this.exampleText = context.text("examples");
@@ -134,8 +143,8 @@ export class ProgramTab {
    */
   setView(id, createView) {
     this.#view?.destroy();
-    const { t, context, session, choice, selection, commands } = this;
-    const view = createView({ t, context, session, choice, selection, commands, redraw: () => this.redraw() });
+    const { t, context, session, choice, node, selection, commands } = this;
+    const view = createView({ t, context, session, choice, node, selection, commands, redraw: () => this.redraw() });
     this.#view = view;
     this.#language = id;
     if (view.bar !== null) this.bar.prepend(view.bar);
@@ -242,14 +251,16 @@ export class ProgramTab {
     workspace.setRobotProgram(ALL, session.state.targets[state.selected]?.program);
     if (workspace.tab !== ALL) workspace.setRobotProgram(workspace.tab, selection.target?.program);
 
-    const reason = disabledReason(state, pageText);
+    const runner = this.#view?.runner;
+    const reason = disabledReason(state, pageText) || (runner?.reason() ?? "");
     const { current } = workspace;
     const { status } = selection;
     this.#showStart(session.isChoosing || this.#isBeginning);
     const hasMistake = this.#view?.hasMistake() ?? false;
-    const allowed = context.mission.editors;
+    const allowed = this.#offered(context.mission.editors);
     this.head.render({ reason, hasMistake, isStart: this.#isStartShown, shown: this.choice.shown, allowed });
     this.file.render({ reason, isUnsaved: isUnsaved(current), hasMistake });
+    this.bar.hidden = runner !== undefined;
     this.badge.render({
       values: status?.values ?? {},
       title: this.#title,
@@ -263,6 +274,12 @@ export class ProgramTab {
     if (this.#isStartShown) {
       this.start.render({ state, reason, recent: workspace.fileStore.recent(), canGoBack: !this.#isBeginning, allowed });
     } else this.#view?.redraw();
+  }
+
+  /** The languages that are offered: nodes only where they can run. @param {readonly string[] | null} allowed  null: all */
+  #offered(allowed) {
+    if (this.node.mayRun || isPython(this.session.workspace.current.name)) return allowed;
+    return (allowed ?? this.languages.map(({ id }) => id)).filter((id) => id !== NODE);
   }
 
   /** Show the ways to begin, or the program. @param {boolean} isStart */
