@@ -29,8 +29,8 @@ COURSE = ROOT / "docs" / "course" / "6-node"
 OTHERS = ROOT / "tests" / "data" / "student_nodes"
 GOAL = (0.2, 0.15)
 TO_GOAL = ("--ros-args", "-p", f"goal_x:={GOAL[0]}", "-p", f"goal_y:={GOAL[1]}")
-LAUNCH = """
-import sys
+LAUNCH = {
+    "py": """
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -43,7 +43,29 @@ def generate_launch_description():
              remappings=[("cmd_vel", "/lab/wish")]),
         Node(package="lesson", executable="relay", namespace="lab", output="screen"),
     ])
-"""
+""",
+    "xml": """
+<launch>
+  <arg name="speed" default="0.0"/>
+  <node pkg="lesson" exec="eight">
+    <param name="speed" value="$(var speed)"/>
+    <remap from="cmd_vel" to="/lab/wish"/>
+  </node>
+  <node pkg="lesson" exec="relay" namespace="lab" output="screen"/>
+</launch>
+""",
+    "yaml": """
+launch:
+- arg: {name: speed, default: "0.0"}
+- node:
+    pkg: lesson
+    exec: eight
+    param: [{name: speed, value: $(var speed)}]
+    remap: [{from: cmd_vel, to: /lab/wish}]
+- node: {pkg: lesson, exec: relay, namespace: lab, output: screen}
+""",
+}
+"""The same launch file in each language, by the ending of its name."""
 RELAY = """
 import rclpy
 from geometry_msgs.msg import Twist
@@ -242,7 +264,7 @@ def test_a_node_answers(
 
 @pytest.fixture
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A package with two programs and a launch file; it is the current folder."""
+    """A package with two programs and launch files; it is the current folder."""
     scripts = '["eight = lesson.eight:main", "relay = lesson.relay:main"]'
     lesson = make_package(tmp_path / "my workspace" / "src" / "lesson", setup=SETUP % scripts)
     (lesson / "lesson").mkdir()
@@ -250,7 +272,8 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copy(OTHERS / "eight.py", lesson / "lesson")
     (lesson / "lesson" / "relay.py").write_text(RELAY, encoding="utf-8")
     (lesson / "launch").mkdir()
-    (lesson / "launch" / "both.launch.py").write_text(LAUNCH, encoding="utf-8")
+    for ending, text in LAUNCH.items():
+        (lesson / "launch" / f"both.launch.{ending}").write_text(text.lstrip(), encoding="utf-8")
     monkeypatch.chdir(lesson.parents[1])
     return lesson.parents[1]
 
@@ -260,11 +283,14 @@ def _has_tools() -> bool:
     return subprocess.run(command, capture_output=True, timeout=PROGRAM_S, check=False).returncode == 0
 
 
-def test_a_launch_file_drives_the_robot(client: Client, start: Callable[..., Process], workspace: Path) -> None:
+@pytest.mark.parametrize("ending", LAUNCH)
+def test_a_launch_file_drives_the_robot(
+    client: Client, start: Callable[..., Process], workspace: Path, ending: str
+) -> None:
     if not _has_tools():
         pytest.skip("the tools of ROS 2 are not installed there (thymio-sim ros2 --install)")
     _in_world(client, "borderless")
-    launch = start("ros2", "launch", "lesson", "both.launch.py", "speed:=0.1")
+    launch = start("ros2", "launch", "lesson", f"both.launch.{ending}", "speed:=0.1")
     client.until(lambda: client.poses and _moved(client), lambda: launch.output)
     names = client.call("/rosapi/nodes")["nodes"]
     assert {"/eight", "/lab/relay"} <= set(names)
