@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import threading
 from importlib import import_module
+from typing import Any
 
 import rclpy
 from geometry_msgs.msg import Transform
@@ -13,6 +15,7 @@ from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.exceptions import NotInitializedException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.task import Future
 from rclpy.wait_for_message import wait_for_message
 from scenario import attempt, seen
 from std_msgs.msg import String
@@ -60,6 +63,18 @@ def parameters(node: Node) -> None:
     seen["log of a number"] = attempt(node.get_logger().info, 5).partition(":")[0]
 
 
+def shutdowns() -> None:
+    """A program that shuts down while it spins: the functions of rclpy return."""
+    calls: Any = (rclpy.spin, lambda node: rclpy.spin_until_future_complete(node, Future()))
+    ended = []
+    for call in calls:
+        rclpy.init(args=[])
+        node = rclpy.create_node("ending")
+        threading.Timer(0.3, rclpy.shutdown).start()
+        ended.append((attempt(call, node), rclpy.ok()))
+    seen["ended by another thread"] = ended
+
+
 def main() -> None:
     """Run all parts and print what was seen."""
     rclpy.init(args=[])
@@ -67,6 +82,8 @@ def main() -> None:
     names_of_topics(node)
     copies()
     parameters(node)
+    rclpy.shutdown()
+    shutdowns()
     print(json.dumps(seen, indent=1))
 
 

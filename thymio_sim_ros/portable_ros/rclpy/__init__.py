@@ -79,15 +79,25 @@ def get_global_executor() -> Executor:
     global _global_executor
     if _global_executor is None:
         from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor
+        from thymio_sim_ros.portable_ros.rclpy.utilities import get_default_context
 
-        made = _global_executor = SingleThreadedExecutor()
-        made.context.on_shutdown(_forget_global_executor)
+        # Before the executor registers, which wakes what waits in it: a shutdown by the program ends `spin` quietly.
+        get_default_context().on_shutdown(_end_global_executor)
+        _global_executor = SingleThreadedExecutor()
     return _global_executor
 
 
-def _forget_global_executor() -> None:
+def _end_global_executor() -> None:
+    executor = _release_global_executor()
+    if executor is not None:
+        executor.shutdown(timeout_sec=0)
+
+
+def _release_global_executor() -> Executor | None:
+    """Let the functions below have a new executor; return the present one, which a shutdown does not end any more."""
     global _global_executor
-    _global_executor = None
+    executor, _global_executor = _global_executor, None
+    return executor
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:

@@ -9,6 +9,8 @@ from enum import IntEnum
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros.portable_ros import rclpy
+
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.context import Context
 
@@ -71,5 +73,6 @@ def _handle(number: int, frame: FrameType | None) -> None:
 
 
 def _shut_down_all() -> None:
+    rclpy._release_global_executor()  # `spin` raises ExternalShutdownException
     for context in list(_contexts):
         context.try_shutdown()
