@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import pytest
 
+from tests.patience import Deadline
 from thymio_sim_ros.portable_ros.messages.message_class import message_type
 from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError
 from thymio_sim_ros.portable_ros.rclpy.context import Context
+from thymio_sim_ros.portable_ros.rclpy.duration import Duration, Infinite
 from thymio_sim_ros.portable_ros.rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor
 from thymio_sim_ros.portable_ros.rclpy.node import Node
+from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, QoSProfile
 
 String, Int32 = message_type("std_msgs/msg/String"), message_type("std_msgs/msg/Int32")
 
@@ -62,3 +65,48 @@ def test_after_a_shutdown_the_number_of_matches_is_an_error() -> None:
     with pytest.raises(RCLError, match="failed to get subscription count: publisher's context is invalid"):
         publisher.get_subscription_count()
     node.destroy_node()
+
+
+def test_both_ends_of_a_topic_report_messages_that_miss_the_deadline(node: Node) -> None:
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    missed: list[tuple[str, int]] = []
+    received: list[str] = []
+    profile = QoSProfile(depth=1, deadline=Duration(seconds=0.02))
+    publisher = node.create_publisher(
+        String,
+        "late",
+        profile,
+        event_callbacks=PublisherEventCallbacks(deadline=lambda info: missed.append(("out", info.total_count))),
+    )
+    subscription = node.create_subscription(
+        String,
+        "late",
+        lambda message: received.append(message.data),
+        profile,
+        event_callbacks=SubscriptionEventCallbacks(deadline=lambda info: missed.append(("in", info.total_count))),
+    )
+    executor.spin_once(timeout_sec=0.1)
+    assert not missed, "the deadline begins with the first message"
+    publisher.publish(String(data="only"))
+    wait = Deadline()
+    while not {("out", 2), ("in", 2)} <= set(missed):
+        assert not wait.is_over, missed
+        executor.spin_once(timeout_sec=0.1)
+    assert received == ["only"]
+    assert not list(node.timers)
+    node.destroy_publisher(publisher)
+    node.destroy_subscription(subscription)
+    assert not list(node.all_timers)
+
+
+@pytest.mark.parametrize(("lifespan", "expected"), [(Duration(), 1), (Duration(nanoseconds=1), 0), (Infinite, 1)])
+def test_a_late_subscription_gets_no_messages_that_are_older_than_their_lifespan(
+    node: Node, lifespan: Duration, expected: int
+) -> None:
+    profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=lifespan)
+    node.create_publisher(String, "kept", profile).publish(String())
+    late = node.create_subscription(
+        String, "kept", lambda _: None, QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    )
+    assert late.pending() == expected

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from thymio_sim_ros.portable_ros.rclpy.event_handler import (
+    CountInfo,
     EventHandler,
     IncompatibleQoSInfo,
     IncompatibleTypeInfo,
@@ -13,7 +14,17 @@ from thymio_sim_ros.portable_ros.rclpy.event_handler import (
 )
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSPolicyKind
 
-__all__ = ["EndpointEvents"]
+__all__ = ["DeadlineTimer", "EndpointEvents"]
+
+
+class DeadlineTimer(Protocol):
+    """A timer, as the events of an endpoint need it."""
+
+    def reset(self) -> None:
+        """Start a period."""
+
+    def destroy(self) -> None:
+        """End it."""
 
 
 class EndpointEvents:
@@ -22,7 +33,9 @@ class EndpointEvents:
     def __init__(self, handlers: Mapping[str, EventHandler]) -> None:
         """`handlers`: by the names of their callbacks, such as `matched`."""
         self._handlers = handlers
-        self._total = self._current = self._misfits = self._other_types = 0
+        self._total = self._current = self._misfits = self._other_types = self._missed = 0
+        self.deadline: DeadlineTimer | None = None
+        """Runs out if no message comes in time; None if nothing asks for that."""
 
     @property
     def handlers(self) -> list[EventHandler]:
@@ -44,6 +57,32 @@ class EndpointEvents:
         """Report an endpoint that has another type."""
         self._other_types += 1
         self._put("incompatible_type", IncompatibleTypeInfo(self._other_types, 1))
+
+    def watch(self, deadline: DeadlineTimer) -> None:
+        """Restart a timer with each message; its callback is `report_missed`."""
+        self.deadline = deadline
+
+    def note_message(self) -> None:
+        """Note a message that is published or received."""
+        if self.deadline is not None:
+            self.deadline.reset()
+
+    def report_missed(self) -> None:
+        """Report a message that did not come within the deadline."""
+        self._missed += 1
+        self._put("deadline", CountInfo(self._missed, 1))
+
+    @property
+    def asks_for_deadlines(self) -> bool:
+        """Whether there is a handler for missed deadlines."""
+        return "deadline" in self._handlers
+
+    def destroy(self) -> None:
+        """Destroy the handlers and the timer of the deadline."""
+        for handler in self._handlers.values():
+            handler.destroy()
+        if self.deadline is not None:
+            self.deadline.destroy()
 
     def _put(self, name: str, info: Any) -> None:
         if name in self._handlers:

@@ -98,8 +98,7 @@ class Publisher(Generic[MsgT]):
 
     def destroy(self) -> None:
         """Publish no more. Nodes have `destroy_publisher`."""
-        for handler in self.event_handlers:
-            handler.destroy()
+        self.events.destroy()
         self._handle.destroy_when_not_in_use()
 
     def match(self, subscription: SubscriptionEnd) -> None:
@@ -122,9 +121,14 @@ class Publisher(Generic[MsgT]):
 
     @property
     def retained(self) -> tuple[Sample, ...]:
-        """The messages that late subscriptions get."""
+        """The messages that late subscriptions get: without those that are older than the lifespan."""
         # A copy without the lock, which a publishing thread holds; the thread of the transport must not wait for it.
-        return () if self._retained is None else tuple(self._retained.copy())
+        kept = () if self._retained is None else tuple(self._retained.copy())
+        lifespan_ns = self.qos_profile.lifespan.nanoseconds
+        if not lifespan_ns:
+            return kept
+        oldest_ns = time_base.system_ns() - lifespan_ns
+        return tuple(one for one in kept if one.source_timestamp > oldest_ns)
 
     def _has_reader(self) -> bool:
         return bool(self.matched) or self._retained is not None or self.context.graph.is_carried
@@ -132,6 +136,7 @@ class Publisher(Generic[MsgT]):
     def _send(self, data: bytes | None) -> None:
         with self._lock:
             self._count += 1
+            self.events.note_message()
             if data is None:
                 return
             sample = Sample(data, time_base.system_ns(), self._count)

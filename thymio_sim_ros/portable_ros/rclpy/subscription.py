@@ -85,8 +85,7 @@ class Subscription(Entity):
 
     def destroy(self) -> None:
         """Receive no more. Nodes have `destroy_subscription`."""
-        for handler in self.event_handlers:
-            handler.destroy()
+        self.events.destroy()
         super().destroy()
 
     def get_publisher_count(self) -> int:
@@ -96,6 +95,7 @@ class Subscription(Entity):
 
     def receive(self, sample: Sample) -> None:
         """Queue a serialized message."""
+        self.events.note_message()
         if self._queue.put(sample):
             self.notify()
 

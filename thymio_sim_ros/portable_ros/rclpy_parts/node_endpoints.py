@@ -11,7 +11,9 @@ from thymio_sim_ros.portable_ros.messages.message_class import Service as Servic
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.client import Client
 from thymio_sim_ros.portable_ros.rclpy.clock import Clock
+from thymio_sim_ros.portable_ros.rclpy.clock_type import ClockType
 from thymio_sim_ros.portable_ros.rclpy.constants import S_TO_NS
+from thymio_sim_ros.portable_ros.rclpy.duration import Duration
 from thymio_sim_ros.portable_ros.rclpy.event_handler import (
     PublisherEventCallbacks,
     SubscriptionEventCallbacks,
@@ -19,7 +21,7 @@ from thymio_sim_ros.portable_ros.rclpy.event_handler import (
 from thymio_sim_ros.portable_ros.rclpy.guard_condition import GuardCondition
 from thymio_sim_ros.portable_ros.rclpy.logging import get_logger
 from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher
-from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile, qos_profile_services_default
+from thymio_sim_ros.portable_ros.rclpy.qos import DeadlineBestAvailable, QoSProfile, qos_profile_services_default
 from thymio_sim_ros.portable_ros.rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
 from thymio_sim_ros.portable_ros.rclpy.service import Service
 from thymio_sim_ros.portable_ros.rclpy.subscription import MessageInfo, Subscription
@@ -57,6 +59,7 @@ class NodeEndpoints(NodeEntities):
         self._graph.require_topic_type(full, msg_type, self._context)
         group = callback_group or self._default_callback_group
         events = self._events(event_callbacks or PublisherEventCallbacks(), group, topic)
+        self._watch_deadline(events, profile, group)
         made = publisher_class(self._context, msg_type, topic, full, profile, events, self._logger.name)
         self._entities[Publisher].append(made)
         made.handle.on_release(lambda: self._graph.remove_publisher(made))
@@ -123,6 +126,7 @@ class NodeEndpoints(NodeEntities):
         self._graph.require_topic_type(full, msg_type, self._context)
         group = callback_group or self._default_callback_group
         events = self._events(event_callbacks or SubscriptionEventCallbacks(), group, topic)
+        self._watch_deadline(events, profile, group)
         made = Subscription(msg_type, topic, full, callback, group, profile, raw, events, self._logger.name)
         self._owned(made)
         made.handle.on_release(lambda: self._graph.remove_subscription(made))
@@ -250,6 +254,15 @@ class NodeEndpoints(NodeEntities):
         for handler in handlers.values():
             self._owned(handler)
         return EndpointEvents(handlers)
+
+    def _watch_deadline(self, events: EndpointEvents, profile: QoSProfile, group: CallbackGroup) -> None:
+        """Have missed deadlines reported, if a profile has a deadline and a callback asks for them."""
+        deadline = profile.deadline
+        if events.asks_for_deadlines and Duration() < deadline < DeadlineBestAvailable:
+            clock = Clock(clock_type=ClockType.STEADY_TIME)
+            timer = Timer(events.report_missed, group, deadline.nanoseconds, clock, autostart=False)
+            timer.is_part = True
+            events.watch(self._owned(timer))
 
 
 def _profile(qos_or_depth: QoSProfile | int) -> QoSProfile:

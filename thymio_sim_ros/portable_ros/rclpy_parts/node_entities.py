@@ -134,8 +134,9 @@ class NodeEntities(NodeParameters):
 
     def _remove_with_events(self, end: Publisher[Any] | Subscription) -> bool:
         is_own = self._remove(end)
-        for handler in end.event_handlers:
-            self._remove(handler)
+        for part in (*end.event_handlers, end.events.deadline):
+            if part is not None:
+                self._remove(part)
         return is_own
 
     def _remove(self, end: Any) -> bool:
