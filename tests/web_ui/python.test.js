@@ -120,6 +120,16 @@ test("a program that is stopped while the world is prepared does not begin", asy
   assert.equal(client.state, "idle");
 });
 
+test("a program that is stopped before it begins ends at once, also while there is no connection yet", () => {
+  const { client, sockets } = newClient();
+  client.run(PROGRAM);
+  sockets[0].send = () => {
+    throw new Error("it is connecting");
+  };
+  client.stop();
+  assert.deepEqual([client.state, sockets[0].isClosed], ["idle", true]);
+});
+
 test("a lost connection ends the node", () => {
   const { client, sockets } = newClient();
   client.run(PROGRAM);

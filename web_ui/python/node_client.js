@@ -106,6 +106,7 @@ export class NodeClient {
 
   /** End the node as Ctrl-C does. */
   stop() {
+    if (this.state === "starting") return this.leave(); // nothing of the program has run
     if (!this.isRunning) return;
     this.state = "stopping";
     this.#socket?.send(JSON.stringify({ op: "stop" }));
