@@ -71,7 +71,7 @@ def init(
         signal_handler_options = SignalHandlerOptions.ALL if is_default else SignalHandlerOptions.NO
     if signal_handler_options != SignalHandlerOptions.NO:
         install_signal_handlers(signal_handler_options)
-        shut_down_at_signals(context)
+        shut_down_at_signals(context, _release_global_executor)  # `spin` raises ExternalShutdownException
 
 
 def get_global_executor() -> Executor:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import signal
 import threading
 import weakref
+from collections.abc import Callable
 from enum import IntEnum
 from types import FrameType
 from typing import TYPE_CHECKING, Any
-
-from thymio_sim_ros.portable_ros import rclpy
 
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.context import Context
@@ -32,7 +31,7 @@ class SignalHandlerOptions(IntEnum):
 
 
 _SIGNALS = {SignalHandlerOptions.SIGINT: signal.SIGINT, SignalHandlerOptions.SIGTERM: signal.SIGTERM}
-_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
+_contexts: weakref.WeakKeyDictionary[Context, Callable[[], object]] = weakref.WeakKeyDictionary()
 _before: dict[int, Any] = {}
 
 
@@ -59,9 +58,9 @@ def uninstall_signal_handlers() -> None:
                 signal.signal(number, handler)
 
 
-def shut_down_at_signals(context: Context) -> None:
-    """Shut a context down when a signal comes."""
-    _contexts.add(context)
+def shut_down_at_signals(context: Context, prepare: Callable[[], object]) -> None:
+    """Call `prepare` and shut a context down when a signal comes."""
+    _contexts[context] = prepare
 
 
 def _handle(number: int, frame: FrameType | None) -> None:
@@ -73,6 +72,6 @@ def _handle(number: int, frame: FrameType | None) -> None:
 
 
 def _shut_down_all() -> None:
-    rclpy._release_global_executor()  # `spin` raises ExternalShutdownException
-    for context in list(_contexts):
+    for context, prepare in list(_contexts.items()):
+        prepare()
         context.try_shutdown()
