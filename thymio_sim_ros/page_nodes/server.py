@@ -107,7 +107,7 @@ class NodeServer:
                 try:
                     await self._run(page, program_of(values), right)
                 except ProgramRefusedError as error:
-                    await page.tell({"op": "ended", "code": None, "reason": "refused", "text": str(error)})
+                    await page.send({"op": "ended", "code": None, "reason": "refused", "text": str(error)})
             case {"op": "begin"} if page.process is not None:
                 page.process.begin()
             case {"op": "stop"} if page.process is not None:
@@ -124,7 +124,7 @@ class NodeServer:
         if other is not None:
             await other.replace()
         if len(self._running) >= MAX_NODES:
-            await page.tell({"op": "ended", "code": None, "reason": "tooMany", "text": f"{MAX_NODES} nodes run"})
+            await page.send({"op": "ended", "code": None, "reason": "tooMany", "text": f"{MAX_NODES} nodes run"})
             return
         self._running[program.namespace] = page
         levels = LEVELS if right is Right.LOCAL else ISOLATED
@@ -154,19 +154,19 @@ class _Page:
         """Start a node; `ended` is called in this thread when it has ended by itself."""
         loop = asyncio.get_running_loop()
 
-        async def tell(process: NodeProcess, event: Mapping[str, Any]) -> None:
+        async def pass_on(process: NodeProcess, event: Mapping[str, Any]) -> None:
             if self.process is not process:
                 return
             if event["event"] == "ended":
                 self.process = None
                 ended(self)
             level = {"level": process.level} if event["event"] == "ready" else {}
-            await self.tell({"op": event["event"], **{key: event[key] for key in event if key != "event"}, **level})
+            await self.send({"op": event["event"], **{key: event[key] for key in event if key != "event"}, **level})
 
         def report(event: Mapping[str, Any]) -> None:
             started.wait()
             with contextlib.suppress(RuntimeError, asyncio.CancelledError, TimeoutError):  # the loop has ended
-                asyncio.run_coroutine_threadsafe(tell(process, event), loop).result()
+                asyncio.run_coroutine_threadsafe(pass_on(process, event), loop).result()
 
         started = threading.Event()
         process = self.process = NodeProcess(program, levels, report, port=port, token=token)
@@ -175,7 +175,7 @@ class _Page:
     async def replace(self) -> None:
         """End the node, because another page runs one for the same robot."""
         self.end()
-        await self.tell({"op": "ended", "code": None, "reason": "replaced"})
+        await self.send({"op": "ended", "code": None, "reason": "replaced"})
 
     def end(self) -> None:
         """End the node if there is one; nothing more is said of it."""
@@ -183,7 +183,7 @@ class _Page:
         if process is not None:
             process.end()
 
-    async def tell(self, message: Mapping[str, Any]) -> None:
+    async def send(self, message: Mapping[str, Any]) -> None:
         """Send a message; wait until the page reads. One that does not read is disconnected."""
         try:
             async with asyncio.timeout(_READ_S):
