@@ -12,6 +12,7 @@ import pytest
 from thymio_sim_ros.portable_ros.messages.definition_text import DefinitionError, Section, Shape, parsed
 from thymio_sim_ros.portable_ros.messages.definitions import definition
 from thymio_sim_ros.portable_ros.messages.interface_files import PACKAGES, interfaces, messages
+from thymio_sim_ros.portable_ros.messages.own_packages import read
 
 MANIFEST = "<package format='3'>\n  <name> {} </name>\n</package>\n"
 
@@ -135,6 +136,14 @@ def test_a_wrong_definition_names_its_file_and_line(workspace: Path) -> None:
     assert (
         f"{file}: found 0 lines '---', expected 1: between Request and Response" in _run(workspace / "node.py").stderr
     )
+
+
+def test_a_file_that_the_build_does_not_list_may_have_any_name(tmp_path: Path) -> None:
+    package = _add(tmp_path / "games", Turtle_msg="float64 x\n", turtle_msg="float64 old\n")
+    with pytest.raises(DefinitionError, match=r"turtle.msg: found the name 'turtle', expected one such as"):
+        read(package)
+    (package / "CMakeLists.txt").write_text('rosidl_generate_interfaces(${PROJECT_NAME}\n  "msg/Turtle.msg"\n)\n')
+    assert read(package) == {"msg/Turtle": "float64 x\n"}
 
 
 WRONG = {

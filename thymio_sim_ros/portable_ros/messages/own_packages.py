@@ -57,12 +57,17 @@ def check_names(package: str, names: Iterable[str]) -> None:
 def read(folder: Path) -> Mapping[str, str]:
     """The texts of a folder by `msg/Name`, `srv/Name` or `action/Name`.
 
-    Raises DefinitionError for a file that cannot be read, or whose name is no name of an interface.
+    Raises DefinitionError for a file that cannot be read, or whose name is no name of an interface. Such a file is left
+    out where `CMakeLists.txt` does not list it, as a build does.
     """
     found = {}
+    build = folder / "CMakeLists.txt"
+    built = build.read_text(encoding="utf-8", errors="replace") if build.is_file() else ""
     for form in FORMS:
         for file in sorted((folder / form).glob(f"*.{form}")):
             if not _NAME.fullmatch(file.stem):
+                if built and f"{form}/{file.name}" not in built:
+                    continue
                 raise DefinitionError(f"{file}: found the name {file.stem!r}, expected one such as AddThreeInts")
             try:
                 found[f"{form}/{file.stem}"] = file.read_text(encoding="utf-8-sig")
