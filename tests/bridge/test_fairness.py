@@ -224,10 +224,10 @@ def test_new_clients_receive_the_current_channels() -> None:
     run(scenario())
 
 
-def test_answers_to_a_client_that_asks_for_much_delay_neither_messages_nor_answers_to_others(
+def test_values_for_a_client_that_asks_for_much_delay_neither_messages_nor_values_for_others(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Answers with all parameters, each some milliseconds of work, occupied the loop for up to fifteen seconds."""
+    """Values of all parameters, each some milliseconds of work, occupied the loop for up to fifteen seconds."""
     monkeypatch.setattr("thymio_sim_ros.bridge.server._SLICE_S", 0.0)
 
     async def scenario() -> None:
@@ -240,7 +240,7 @@ def test_answers_to_a_client_that_asks_for_much_delay_neither_messages_nor_answe
             server.publish(b"data")
             assert (await other.next(ms.MessageData)).payload == b"data"
             assert (await other.next(ms.ParameterValues)).id == "other"
-            assert server.server._answers
+            assert server.server._values
             assert [(await busy.next(ms.ParameterValues)).id for _ in range(500)] == [f"busy{n}" for n in range(500)]
 
     run(scenario())

@@ -36,7 +36,6 @@ from thymio_sim_ros.bridge.report_limiter import ReportLimiter
 from thymio_sim_ros.bridge.rosbridge import frames
 from thymio_sim_ros.bridge.settings import EventSink, ServerSettings
 from thymio_sim_ros.bridge.switchboard.events import (
-    AnswerCall,
     Command,
     Data,
     Event,
@@ -44,7 +43,6 @@ from thymio_sim_ros.bridge.switchboard.events import (
     RosbridgeLeft,
     RosbridgeReceived,
     SendParameters,
-    SendToClient,
 )
 from thymio_sim_ros.bridge.switchboard.outcome import Delivery
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
@@ -55,10 +53,8 @@ __all__ = ["BridgeServer"]
 _Work = tuple[int, int, bytes] | Command | Callable[[], None]
 """A message of a channel with its time, a command, or a function to call."""
 
-_Answer = AnswerCall | SendParameters | SendToClient
-
 _SLICE_S = 0.002
-"""Processor time of the event loop that one client, or answers, may use before other clients are served, s."""
+"""Processor time of the event loop that one client, or values of parameters, may use before others are served, s."""
 _MAX_PENDING = 1000
 """Messages and commands that wait for the event loop; the thread of a further one waits until they are processed."""
 _MAX_IDLE = 100
@@ -97,8 +93,8 @@ class BridgeServer:
         self._client_ids = itertools.count(1)
         self._pending: deque[_Work] = deque()
         """What has been posted and not been processed yet."""
-        self._answers: FairQueue[int, _Answer] = FairQueue()
-        """Answers by client: those to one that asks for much delay nothing else."""
+        self._values: FairQueue[int, SendParameters] = FairQueue()
+        """Requested values of parameters by client: a client that asks for much delays nothing else."""
         self._is_woken = False
         """Whether the loop is going to process `_pending`."""
         self._has_room = threading.Event()
@@ -174,8 +170,8 @@ class BridgeServer:
                     self._send_data(*work)
                 elif callable(work):
                     work()
-                elif isinstance(work, _Answer):
-                    self._put_answer(work)
+                elif isinstance(work, SendParameters):
+                    self._put_values(work)
                 else:
                     self._deliver(self._board.apply(work))
             except Exception:
@@ -184,22 +180,22 @@ class BridgeServer:
         self._flush()
         self._has_room.set()
 
-    def _put_answer(self, answer: _Answer) -> None:
-        if not self._answers:
-            self._loop.call_soon(self._send_answers)
-        self._answers.put(answer.client, answer)
+    def _put_values(self, values: SendParameters) -> None:
+        if not self._values:
+            self._loop.call_soon(self._send_values)
+        self._values.put(values.client, values)
 
-    def _send_answers(self) -> None:
-        """Send answers for `_SLICE_S`, and others in the next iterations of the event loop."""
+    def _send_values(self) -> None:
+        """Send values for `_SLICE_S`, and others in the next iterations of the event loop."""
         end_s = time.thread_time() + _SLICE_S
-        while self._answers:
-            answer = self._answers.pop()
+        while self._values:
+            values = self._values.pop()
             try:
-                self._deliver(self._board.apply(answer))
+                self._deliver(self._board.apply(values))
             except Exception:
-                self._log_failure(answer)
-            if time.thread_time() >= end_s and self._answers:
-                self._loop.call_soon(self._send_answers)
+                self._log_failure(values)
+            if time.thread_time() >= end_s and self._values:
+                self._loop.call_soon(self._send_values)
                 break
         self._flush()
 
