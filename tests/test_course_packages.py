@@ -174,6 +174,7 @@ def test_a_node_uses_an_own_half_of_tf_transformations_in_a_test(ros, simulation
     assert loaded is None or loaded.__file__ != str(tmp_path / "tf_transformations.py")
 
 
+@pytest.mark.slow
 @pytest.mark.process
 def test_a_submission_with_an_own_half_of_tf_transformations_is_graded(tmp_path):
     assignment, submission = tmp_path / "assignment", tmp_path / "submissions" / "ada"

@@ -31,6 +31,7 @@ def marks(folder: Path) -> dict[str, str]:
         return {row["name"]: row["points"] for row in csv.DictReader(file)}
 
 
+@pytest.mark.slow
 @pytest.mark.process
 def test_a_class_gets_a_point_for_each_star(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     programs = FOLDER / "5-robots"
@@ -50,6 +51,7 @@ def test_a_class_gets_a_point_for_each_star(tmp_path: Path, capsys: pytest.Captu
     assert "bert waits" in page.read_text(encoding="utf-8") or "anna sends 5" in page.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.process
 @pytest.mark.skipif(sys.platform == "win32", reason="programs under test need Linux or macOS")
 def test_a_node_is_graded_by_a_mission(tmp_path: Path) -> None:

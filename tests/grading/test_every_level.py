@@ -103,6 +103,7 @@ def verdicts(level: str, actions: Collection[str]) -> list[tuple[str, str]]:
     return [(one.outcome, one.message.partition("\n")[0]) for one in graded.verdicts]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", LEVELS)
 def test_verdicts_and_reasons_are_the_same_at_every_level(level: str) -> None:
     expected = CASES | (ELSEWHERE if level == "process" else {})

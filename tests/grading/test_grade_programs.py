@@ -85,6 +85,7 @@ def points(output: Path) -> dict[str, str]:
         return {row["name"]: row["points"] for row in csv.DictReader(file)}
 
 
+@pytest.mark.slow
 def test_programs_are_graded_and_cannot_end_the_grader(tmp_path: Path, level: str) -> None:
     output = grade(tmp_path, {"Good": GOOD, "Hostile": HOSTILE, "Noisy": NOISY, "Fails": FAILS}, level)
     assert points(output) == {"Good": "2", "Hostile": "0", "Noisy": "0", "Fails": "0"}

@@ -120,12 +120,14 @@ def test_with_a_token_only_the_right_one_runs_nodes(tmp_path: Path) -> None:
             assert page.result("print(1)")[0] == "1\n"
 
 
+@pytest.mark.slow
 def test_without_nodes_no_one_runs_them(tmp_path: Path) -> None:
     with running(tmp_path, "--no-nodes") as (port, _):
         assert permission(port) == {"right": "off", "may_run": False}
         assert status(port) == 403
 
 
+@pytest.mark.slow
 @linux
 def test_behind_a_proxy_nodes_run_only_for_all_and_in_isolation(tmp_path: Path) -> None:
     forwarded = {"X-Forwarded-For": "192.0.2.7", "X-Forwarded-Host": "school.example"}
@@ -168,6 +170,7 @@ def test_a_message_beyond_all_limits_closes_the_connection(port: int) -> None:
             page.next("ended")
 
 
+@pytest.mark.slow
 def test_a_node_that_is_slow_to_start_gets_its_connection(tmp_path: Path) -> None:
     """Its connection is made before its interpreter starts; the ports of pages close those that are silent."""
     with running(tmp_path) as (port, _), Page(port) as page:
@@ -266,6 +269,7 @@ def test_nothing_of_a_node_is_left_behind(port: int, end: str) -> None:
     until(lambda: not processes_with(MARK))
 
 
+@pytest.mark.slow
 @linux
 @pytest.mark.parametrize("number", ["SIGINT", "SIGKILL"])
 def test_nothing_of_a_node_is_left_when_the_suite_ends(tmp_path: Path, number: str) -> None:

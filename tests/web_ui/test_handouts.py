@@ -58,6 +58,7 @@ def check(page) -> None:
         assert findings(page) == []
 
 
+@pytest.mark.slow
 def test_a_lesson_from_the_hand_out_to_the_marks(group: RunningClass, page, other_page, own_page, tmp_path) -> None:
     teacher, ada, jurg = page, other_page, own_page
     task = tmp_path / "<b>bus<b>.aesl"

@@ -33,7 +33,7 @@ def solution(name):
     return Path(NODES[name].solutions["ros"]).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", NODES)
+@pytest.mark.parametrize("name", ["first_node", pytest.param("node_line", marks=pytest.mark.slow)])
 def test_the_solution_of_a_mission_gets_all_stars_as_it_does_headless(world, page, name):
     open_page(page, world("base", "none"))
     page.locator("#missions-open").click()
@@ -77,6 +77,7 @@ def test_an_error_leads_to_its_line_and_a_try_again_runs_the_node(world, page):
     playwright.expect(page.locator(STATE)).to_have_text("ended")
 
 
+@pytest.mark.slow
 def test_a_node_is_kept_opened_and_saved_as_a_file(world, page, tmp_path):
     address = world("base", "none")
     open_page(page, address)

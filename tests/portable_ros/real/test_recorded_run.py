@@ -24,6 +24,7 @@ Messages = dict[str, list[tuple[str, bytes]]]
 """The messages of each topic, as text and as the bytes that the embedded graph writes."""
 
 
+@pytest.mark.slow
 @pytest.mark.process
 @pytest.mark.usefixtures("ros_domain")
 def test_a_run_and_its_replay_have_the_same_messages_and_the_same_log_on_both_graphs(tmp_path: Path) -> None:
