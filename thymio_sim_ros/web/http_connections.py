@@ -177,8 +177,7 @@ class _Acceptor:
         self._connections = connections
         self._report = report
         self._log = log
-        self._handshakes: set[asyncio.Task[None]] = set()
-        """Handshakes of TLS that are not complete."""
+        self._connecting: set[asyncio.Task[None]] = set()
 
     async def accept_forever(self, listener: socket, tls: ssl.SSLContext | None) -> None:
         """Accept the connections of a listening socket, until it is canceled."""
@@ -187,10 +186,12 @@ class _Acceptor:
         listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)  # accepted sockets inherit it
         listener.listen(BACKLOG)
         while True:
-            await _readable(listener)
             try:
                 accepted, peer = listener.accept()
-            except (BlockingIOError, InterruptedError, ConnectionAbortedError):  # the client has disconnected
+            except BlockingIOError:
+                await _readable(listener)
+                continue
+            except (InterruptedError, ConnectionAbortedError):  # the client has disconnected
                 continue
             except OSError as error:  # out of file descriptors
                 self._report("accept", f"connections cannot be accepted: {error.strerror}")
@@ -205,15 +206,14 @@ class _Acceptor:
                 accepted.close()
                 raise
             slot = self._connections.add(str(peer[0]))
-            if tls is None:
-                await self._connect(slot, accepted)
-            else:  # the handshake takes as long as the client wants, and other clients do not wait for it
-                task = loop.create_task(self._connect(slot, accepted, tls))
-                slot.close = task.cancel
-                self._handshakes.add(task)
-                task.add_done_callback(self._handshakes.discard)
+            # In a task of its own: a handshake of TLS takes as long as the client wants.
+            task = loop.create_task(self._connect(slot, accepted, tls))
+            slot.close = task.cancel
+            self._connecting.add(task)
+            task.add_done_callback(self._connecting.discard)
+            await asyncio.sleep(0)
 
-    async def _connect(self, slot: ConnectionSlot, accepted: socket, tls: ssl.SSLContext | None = None) -> None:
+    async def _connect(self, slot: ConnectionSlot, accepted: socket, tls: ssl.SSLContext | None) -> None:
         loop = asyncio.get_running_loop()
         is_connected = False
         try:
