@@ -15,10 +15,10 @@ from thymio_sim_ros.portable_ros import import_hook
 import_hook.install(is_forced=True)
 
 from thymio_sim_ros.classroom.suite_process import PLAYGROUND_VARIABLE
-from thymio_sim_ros.cli import main, suite  # noqa: F401 - imported for the processes that are forked
+from thymio_sim_ros.cli import main, suite  # noqa: F401 - for the forked processes
 from thymio_sim_ros.files import resources
-from thymio_sim_ros.network import tdm_server  # noqa: F401 - as above
-from thymio_sim_ros.network.http import server  # noqa: F401 - as above
+from thymio_sim_ros.network import tdm_server  # noqa: F401 - for the forked processes
+from thymio_sim_ros.network.http import server  # noqa: F401 - for the forked processes
 from thymio_sim_ros.ros.combined import run_ticks
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.suite_config import SuiteConfig
