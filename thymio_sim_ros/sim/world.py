@@ -21,7 +21,7 @@ from thymio_sim_ros.sim.ground.sampling import Ground
 from thymio_sim_ros.sim.model.clock import TICK_NS, Schedule, SimClock
 from thymio_sim_ros.sim.model.fields import FieldError, as_color, read, write
 from thymio_sim_ros.sim.model.geometry import Pose
-from thymio_sim_ros.sim.model.lidar import LIDAR, Lidar
+from thymio_sim_ros.sim.model.lidar import Lidar
 from thymio_sim_ros.sim.model.primitives import Color
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.model.robot_constants import PROXIMITY_MODELS
@@ -36,7 +36,7 @@ from thymio_sim_ros.sim.playground.placement import (
 from thymio_sim_ros.sim.playground.reader import Playground, RobotStart
 from thymio_sim_ros.sim.playground.scene import ObjectSnapshot, Scene, Snapshot
 from thymio_sim_ros.sim.robot.robot import Robot, SharedState
-from thymio_sim_ros.sim.sensors import Sensor, all_sensors
+from thymio_sim_ros.sim.sensors import chosen_sensors
 from thymio_sim_ros.sim.stimuli import all_stimuli
 
 __all__ = ["TICK_NS", "StepResult", "World", "WorldOptions"]
@@ -109,7 +109,7 @@ class World:
                 f"proximity model: found {proximity_model!r}, expected one of {', '.join(PROXIMITY_MODELS)}"
             )
         self._motor_model = SetMotorModel(motor_model)
-        self._sensors = _chosen(_present(all_sensors(), lidar), periods_ns)
+        self._sensors = chosen_sensors(lidar, periods_ns)
         self.playground = playground
         self.scene = Scene.of(playground)
         periods = None if periods_ns is None else tuple(periods_ns.items())
@@ -390,30 +390,3 @@ def _finite(name: str, pose: Pose) -> Pose:
         at = f"{pose.x_m}, {pose.y_m} m, {pose.yaw_rad} rad"
         raise ValueError(f"'{name}' cannot be placed at {at}: expected finite numbers")
     return pose
-
-
-def _present(sensors: tuple[Sensor, ...], lidar: Lidar | None) -> tuple[Sensor, ...]:
-    """The sensors of a robot with these add-ons, which have their own periods."""
-    periods_ns = {} if lidar is None else {LIDAR: lidar.period_ns}
-    return tuple(
-        sensor.with_period(periods_ns.get(sensor.name, sensor.period_ns))
-        for sensor in sensors
-        if not sensor.is_add_on or sensor.name in periods_ns
-    )
-
-
-def _chosen(sensors: tuple[Sensor, ...], periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
-    """The sensors that measure. Raises ValueError for an unknown name or a period that is not above 0."""
-    if periods_ns is None:
-        return sensors
-    names = [sensor.name for sensor in sensors]
-    for name, period_ns in periods_ns.items():
-        if name not in names:
-            raise ValueError(f"sensor: found {name!r}, expected one of {', '.join(names)}")
-        if period_ns <= 0:
-            raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
-    return tuple(
-        sensor.with_period(periods_ns.get(sensor.name, sensor.period_ns))
-        for sensor in sensors
-        if sensor.name in periods_ns or sensor.is_add_on
-    )

@@ -8,19 +8,20 @@ and is woken by the types in `wakes_on`.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from thymio_sim_ros.files import registry
 from thymio_sim_ros.sim.model.clock import NEVER_NS
+from thymio_sim_ros.sim.model.lidar import LIDAR, Lidar
 from thymio_sim_ros.sim.model.readings import Reading
 from thymio_sim_ros.sim.plugin_api.aseba_binding import NO_SENSOR_FACE, AsebaFace
 from thymio_sim_ros.sim.plugin_api.display import DisplayedValue, Label
 from thymio_sim_ros.sim.plugin_api.plugin_isolation import guarded_sensor
 from thymio_sim_ros.sim.plugin_api.view import BatchSensorView, SensorView
 
-__all__ = ["NEVER_NS", "Sensor", "all_sensors"]
+__all__ = ["NEVER_NS", "Sensor", "all_sensors", "chosen_sensors"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +87,28 @@ class Sensor:
 def all_sensors() -> tuple[Sensor, ...]:
     """All sensors, of this package and of other packages, in name order."""
     return registry.collect(sys.modules[__name__], "SENSOR", Sensor, check=_check, guard=_guarded)
+
+
+def chosen_sensors(lidar: Lidar | None, periods_ns: Mapping[str, int] | None) -> tuple[Sensor, ...]:
+    """The sensors of robots with these add-ons that measure, with their periods.
+
+    Args:
+        lidar: The lidar, None for robots without one; it measures also if it is not among `periods_ns`.
+        periods_ns: The sensors that measure, and their periods; None: all, with their own periods.
+
+    Raises:
+        ValueError: A name is unknown, or a period is not above 0.
+    """
+    add_ons = {} if lidar is None else {LIDAR: lidar.period_ns}
+    present = [sensor for sensor in all_sensors() if not sensor.is_add_on or sensor.name in add_ons]
+    own_ns = {sensor.name: sensor.period_ns for sensor in present} | add_ons
+    chosen_ns = own_ns if periods_ns is None else {**add_ons, **periods_ns}
+    for name, period_ns in chosen_ns.items():
+        if name not in own_ns:
+            raise ValueError(f"sensor: found {name!r}, expected one of {', '.join(own_ns)}")
+        if period_ns <= 0:
+            raise ValueError(f"period of {name!r}: found {period_ns} ns, expected a number above 0")
+    return tuple(sensor.with_period(chosen_ns[sensor.name]) for sensor in present if sensor.name in chosen_ns)
 
 
 def _check(sensor: Sensor) -> None:
