@@ -1,13 +1,11 @@
 // A program of VPL as a program of blocks that does the same.
 
+import { REPORTS } from "../editor/aesl.js";
 import { newFile } from "./file.js";
 import { blocksOfText } from "./from_text.js";
 import { generate } from "./generator.js";
 
 /** @typedef {import("./from_text.js").Unknown} Unknown */
-
-/** Names of the event that a program of VPL emits with the index of a row, each time the row has run. */
-export const REPORTS = ["pair_run", "PairExecuted"];
 
 /**
  * A file with blocks for each statement of the text of a program of VPL, or the first line that no block stands for. The

@@ -34,6 +34,8 @@ export const GREATEST = 32767;
 export const LARGEST_EVENT = 258;
 /** Elements in which editors store a VPL program. */
 const VPL = ["ThymioVisualProgramming", "ThymioVPL", "vplroot"];
+/** Names of the event that a program of VPL emits with the index of a row, each time the row has run. */
+export const REPORTS = ["pair_run", "PairExecuted"];
 const VPL_EVENTS = [
   { name: "pair_run", value: 1 },
   { name: "debug_log", value: 14 },

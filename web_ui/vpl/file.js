@@ -1,7 +1,6 @@
 // VPL programs in .aesl files: open one, and write changes into it; everything else in the file stays byte for byte.
 
-import { REPORTS } from "../blockly/as_blocks.js";
-import { AeslError, newAesl, readAesl, withCode, withEntry } from "../editor/aesl.js";
+import { AeslError, newAesl, readAesl, REPORTS, withCode, withEntry } from "../editor/aesl.js";
 import { encoded } from "../editor/xml.js";
 import { lastOf, placeOf, readElements } from "./elements.js";
 import { VplError } from "./errors.js";

@@ -1,6 +1,6 @@
 // Generates the Aseba text of a VPL program, with the lines of each row.
 
-import { REPORTS } from "../blockly/as_blocks.js";
+import { REPORTS } from "../editor/aesl.js";
 import { hasCondition } from "./blocks.js";
 import { check } from "./check.js";
 import { all, eventTest, START, stateCondition } from "./conditions.js";

@@ -7,7 +7,6 @@
 //   textPane          the text that is made from the blocks
 //   noticeList        what the user must know or decide
 
-import { asBlocks } from "../../blockly/as_blocks.js";
 import { trySetItem } from "../../browser/local_storage.js";
 import { translator } from "../../i18n/index.js";
 import TEXTS from "../../i18n/vpl.texts.js";
@@ -241,13 +240,15 @@ class VplView {
   }
 
   /** The program as blocks, which is a new program: blocks cannot become rows again. */
-  #showAsBlocks() {
+  async #showAsBlocks() {
     const { editing, t } = this;
     /** @type {HTMLElement | null} */ (this.entries[0].closest("[popover]"))?.hidePopover();
     if (editing.isBlocked) return this.showMistake();
-    const { text, unknown } = asBlocks(editing.shown.text);
-    if (text === null) return this.report(t("blocks.unknown", { ...unknown }), "error");
     const { commands, session, context } = this.parts;
+    const module = await import("../../blockly/as_blocks.js").catch(() => null);
+    if (module === null) return this.report(context.text("page")("app.notLoaded"), "error");
+    const { text, unknown } = module.asBlocks(editing.shown.text);
+    if (text === null) return this.report(t("blocks.unknown", { ...unknown }), "error");
     const { name } = session.workspace.current;
     commands.beginFromThis(text);
     context.announce(t("blocks.shown", { name }));
