@@ -26,6 +26,28 @@ def test_arrays_and_sequences_have_their_defaults_each_message_its_own() -> None
         assert other.int16_values_default[0] == 0
 
 
+def test_constants_and_defaults_of_a_class_cannot_be_changed() -> None:
+    kind = message_type("rcl_interfaces/msg/Log")
+    with pytest.raises(AttributeError, match="property 'INFO' of 'Metaclass_Log' object has no setter"):
+        kind.INFO = 1
+    with pytest.raises(AttributeError, match="property 'INFO' of 'Metaclass_Log' object has no deleter"):
+        del kind.INFO
+    with pytest.raises(AttributeError, match="'Log' object attribute 'INFO' is read-only"):
+        kind().INFO = 1
+    assert kind.INFO == kind().INFO == 20
+    defaults = message_type("test_msgs/msg/Defaults")
+    with pytest.raises(AttributeError, match="has no setter"):
+        defaults.INT8_VALUE__DEFAULT = 1
+    assert defaults.INT8_VALUE__DEFAULT == defaults().int8_value == -50
+
+
+def test_a_class_made_from_a_message_class_shows_its_own_name() -> None:
+    class Sub(WStrings):  # type: ignore[misc, valid-type]
+        pass
+
+    assert repr(Sub()).startswith(f"{__name__.rpartition('.')[0]}.Sub(wstring_value='")
+
+
 @pytest.mark.parametrize("name", list(interface_files.names("test_msgs", "msg")))
 def test_samples_of_messages_are_the_same_after_a_journey(name: str) -> None:
     samples = get_test_msg(name)

@@ -98,6 +98,10 @@ def test_a_class_has_the_attributes_of_the_real_one(name: str) -> None:
         value = getattr(real, constant.name)
         assert getattr(ours, constant.name) == value
         assert type(getattr(ours, constant.name)) is type(value)
+    defaults = [one for one in vars(real) if one.endswith("__DEFAULT")]
+    assert [one for one in vars(ours) if one.endswith("__DEFAULT")] == defaults
+    for default in defaults:
+        assert repr(getattr(ours, default)) == repr(getattr(real, default))
 
 
 def _type_text(kind: Any) -> str:

@@ -92,9 +92,9 @@ class Message:
                 setattr(self, member.slot, member.values.default())
 
     def __repr__(self) -> str:
-        package, form, *_ = type(self).__module__.split(".")
+        *package, _ = type(self).__module__.split(".")
         texts = (f"{name}={_shown(getattr(self, name))}" for name in self._fields_and_field_types)
-        return f"{package}.{form}.{type(self).__name__}({', '.join(texts)})"
+        return f"{'.'.join([*package, type(self).__name__])}({', '.join(texts)})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, type(self)):
@@ -137,27 +137,33 @@ def _are_equal(one: Any, other: Any) -> bool:
 @functools.cache
 def message_type(name: str) -> Any:
     """The class of a message by its full name, such as `std_msgs/msg/Bool`. Raises KeyError if there is none."""
-    of = definition(name)
+    of, short = definition(name), name.rpartition("/")[2]
     members = tuple(
         Member(field, values_of(field, message_type), check_of(field, message_type), f"_{field.name}")
         for field in of.fields
     )
+    constants = {one.name: one.value for one in of.constants}
+    for member in members:
+        if member.field.default is not None:
+            constants[f"{member.field.name.upper()}__DEFAULT"] = member.values.default()
     namespace: dict[str, Any] = {
         "__slots__": [member.slot for member in members],
         "__module__": module_of(name),
-        "__doc__": f"Message class '{name.rpartition('/')[2]}'.",
+        "__doc__": f"Message class '{short}'.",
         "SLOT_TYPES": tuple(_slot_type(field.type) for field in of.fields),
         "TYPE_NAME": name,
         "members": members,
         "_fields_and_field_types": {field.name: _idl(field.type) for field in of.fields},
-        **{constant.name: constant.value for constant in of.constants},
+        **constants,
     }
     for member in members:
         namespace[member.field.name] = _property(member)
         if member.values.to_wire is not None:
             namespace[member.wire] = _wire_property(member, member.values.to_wire)
-    made = type(name.rpartition("/")[2], (Message,), namespace)
-    made.__slots__ = [*made.__slots__, "_check_fields"]  # type: ignore[attr-defined]  # as rosidl's; the base has this one
+    # As rosidl's: constants are properties of the class of the class, so that they cannot be assigned.
+    metaclass = type(f"Metaclass_{short}", (type,), {one: _constant(value) for one, value in constants.items()})
+    made = metaclass(short, (Message,), namespace)
+    made.__slots__ = [*made.__slots__, "_check_fields"]  # as rosidl's; the base has this one
     return made
 
 
@@ -168,6 +174,10 @@ def service_type(name: str) -> Any:
         raise KeyError(name)
     parts = {part: message_type(f"{name}_{part}") for part in SERVICE_PARTS}
     return type(name.rpartition("/")[2], (Service,), {"__module__": module_of(name), "TYPE_NAME": name, **parts})
+
+
+def _constant(value: Any) -> property:
+    return property(lambda _: value)
 
 
 def _property(member: Member) -> property:
