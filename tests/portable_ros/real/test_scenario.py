@@ -14,7 +14,13 @@ import pytest
 from tests.patience import PATIENCE_S
 
 FOLDER = Path(__file__).parent.parent
-SCENARIOS = ["scenario.py", "scenario_details.py", "scenario_lifecycle.py", "scenario_values.py"]
+SCENARIOS = [
+    "scenario.py",
+    "scenario_details.py",
+    "scenario_lifecycle.py",
+    "scenario_refusals.py",
+    "scenario_values.py",
+]
 if PathFinder.find_spec("test_msgs") is not None:  # a package that has actions
     SCENARIOS.append("scenario_actions.py")
 HERE = ("-m", "thymio_sim_ros.portable_ros")

@@ -18,7 +18,7 @@ _TOKEN_WITH_NUMBER = re.compile(r"/(?=\d)")
 def topic_problem(name: str) -> NameProblem:
     """The problem of a name of a topic or service that may be relative and have substitutions.
 
-    Raises TypeError for half a character, which no UTF-8 has.
+    Raises TypeError for what is no text, and for half a character, which no UTF-8 has.
     """
     _check_unicode(name)
     if not name:
@@ -71,6 +71,8 @@ def namespace_problem(name: str) -> NameProblem:
 
 
 def _check_unicode(name: str) -> None:
+    if not isinstance(name, str):
+        raise TypeError(f"name: found {name!r}, expected a str")
     try:
         name.encode()
     except UnicodeEncodeError as error:
@@ -97,7 +99,8 @@ def _full_problem(name: str, what: str, end: str, *, is_root_allowed: bool) -> N
 
 
 def node_problem(name: str) -> NameProblem:
-    """The problem of a name of a node."""
+    """The problem of a name of a node. Raises TypeError for one that is no text."""
+    _check_unicode(name)
     if not name:
         return "node name must not be empty", 0
     if found := re.search(r"[^A-Za-z0-9_]", name):
@@ -115,8 +118,6 @@ def expanded(name: str, node: str, namespace: str) -> str:
     Raises TypeError for a name that is no text, and ValueError for one that is not valid, whose text ends with the
     reason.
     """
-    if not isinstance(name, str):
-        raise TypeError(f"topic name: found {name!r}, expected a str")
     if problem := topic_problem(name):
         raise ValueError(f"topic name '{name}' is invalid: {problem[0]}")
     space = namespace if namespace.endswith("/") else f"{namespace}/"

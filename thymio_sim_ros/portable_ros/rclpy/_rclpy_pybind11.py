@@ -1,4 +1,4 @@
-"""What other modules use of the compiled part of rclpy: its exceptions, and the waits of executors."""
+"""What other modules use of the compiled part of rclpy: exceptions, checks of arguments, the waits of executors."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ __all__ = [
     "RMWError",
     "UnknownROSArgsError",
     "WaitSet",
+    "require_argument",
 ]
 
 _LONGEST_WAIT_S = 0.2 if sys.platform == "win32" else threading.TIMEOUT_MAX
@@ -44,6 +45,12 @@ class NodeNameNonExistentError(RCLError):
 
 class InvalidHandle(RuntimeError):
     """The object is destroyed."""
+
+
+def require_argument(function: str, found: object, kind: type) -> None:
+    """Raise TypeError, as the compiled function does, for an argument of another type."""
+    if not isinstance(found, kind):
+        raise TypeError(f"{function}(): incompatible function arguments: found {found!r}, expected a {kind.__name__}")
 
 
 class WaitSet:

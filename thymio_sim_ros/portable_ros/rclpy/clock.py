@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import threading
 import weakref
 from collections.abc import Callable
@@ -92,7 +93,8 @@ class JumpHandle:
             raise ValueError("pre_callback must be callable if given")
         if post_callback is not None and not callable(post_callback):
             raise ValueError("post_callback must be callable if given")
-        self.threshold, self.pre_callback, self.post_callback = threshold, pre_callback, post_callback
+        self.is_asked_for = copy.copy(threshold).is_exceeded
+        self.pre_callback, self.post_callback = pre_callback, post_callback
         self._clock = weakref.ref(clock)
         clock._jumps.append(self)
 
@@ -193,7 +195,7 @@ class Clock:
 
     def _jump(self, jump: TimeJump, change: Callable[[], None]) -> None:
         """Change the time, with all callbacks before and after it."""
-        called = [one for one in self._jumps if one.threshold.is_exceeded(jump)]
+        called = [one for one in self._jumps if one.is_asked_for(jump)]
         for one in called:
             if one.pre_callback is not None:
                 one.pre_callback()
@@ -237,7 +239,9 @@ class ROSClock(Clock):
         self._timers.add(timer)
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Set the simulated time."""
+        """Set the simulated time. Raises TypeError for what is no time."""
+        if not isinstance(time, Time):
+            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
         delta = Duration(nanoseconds=time.nanoseconds - self._override_ns)
 
         def change() -> None:

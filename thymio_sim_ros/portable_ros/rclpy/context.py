@@ -66,6 +66,12 @@ class Context:
         """Whether the context is initialized and not shut down."""
         return self._is_ok
 
+    def require_ok(self, failure: str) -> None:
+        """Raise RCLError if the context is not usable; `failure` says what cannot be done."""
+        if not self.ok():
+            reason = "either rcl_init() was not called or rcl_shutdown() was called."
+            raise RCLError(f"{failure}: the given context is not valid, {reason}")
+
     def destroy(self) -> None:
         """Shut down."""
         self.try_shutdown()

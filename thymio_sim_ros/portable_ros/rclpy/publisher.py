@@ -93,8 +93,13 @@ class Publisher(Generic[MsgT]):
         """Need nothing: a publisher lives as long as its process."""
 
     def wait_for_all_acked(self, timeout: Duration = Duration(nanoseconds=-1)) -> bool:  # noqa: B008  # as rclpy's
-        """Return at once: messages arrive while they are published."""
-        return True
+        """Return at once: messages arrive while they are published. Raises RCLError after a shutdown."""
+        with self._handle:
+            if not self.context.ok():
+                raise RCLError(
+                    "Failed to wait for all acknowledgements: publisher's context is invalid"  # codespell:ignore
+                )
+            return True
 
     def destroy(self) -> None:
         """Publish no more. Nodes have `destroy_publisher`."""

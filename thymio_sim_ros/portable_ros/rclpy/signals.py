@@ -10,6 +10,8 @@ from enum import IntEnum
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import require_argument
+
 if TYPE_CHECKING:
     from thymio_sim_ros.portable_ros.rclpy.context import Context
 
@@ -36,7 +38,11 @@ _before: dict[int, Any] = {}
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Handle signals from now on, in addition to the handlers of the program. Only the main thread can."""
+    """Handle signals from now on, in addition to the handlers of the program. Only the main thread can.
+
+    Raises TypeError for other options than those of SignalHandlerOptions.
+    """
+    require_argument("install_signal_handlers", options, SignalHandlerOptions)
     if threading.current_thread() is not threading.main_thread():
         return
     for option, number in _SIGNALS.items():

@@ -54,11 +54,13 @@ class Timer(Entity):
     @property
     def timer_period_ns(self) -> int:
         """The period."""
-        return self._period_ns
+        with self._handle:
+            return self._period_ns
 
     @timer_period_ns.setter
     def timer_period_ns(self, value: int) -> None:
-        self._period_ns = int(value)
+        with self._handle:
+            self._period_ns = int(value)
 
     def is_ready(self) -> bool:
         """Whether a call is due."""

@@ -12,7 +12,7 @@ from thymio_sim_ros.portable_ros.graph.deadline import Deadline
 from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.graph.ready_queue import ReadyQueue
 from thymio_sim_ros.portable_ros.graph.time_base import note_query
-from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import RCLError, WaitSet
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import WaitSet
 from thymio_sim_ros.portable_ros.rclpy.task import Future, Task
 from thymio_sim_ros.portable_ros.rclpy.utilities import get_default_context, timeout_sec_to_nsec
 
@@ -27,8 +27,6 @@ __all__ = [
     "ShutdownException",
     "TimeoutException",
 ]
-
-_NO_CONTEXT = "the given context is not valid, either rcl_init() was not called or rcl_shutdown() was called."
 
 
 class TimeoutException(Exception):
@@ -256,9 +254,9 @@ class Executor:
         if self._context.ok():
             return
         if timeout_sec_to_nsec(timeout_sec) > 0:
-            raise RCLError(f"failed to create timer: {_NO_CONTEXT}")
+            self._context.require_ok("failed to create timer")
         if not (self._is_shutdown or condition()):
-            raise RCLError(f"failed to initialize wait set: {_NO_CONTEXT}")
+            self._context.require_ok("failed to initialize wait set")
 
     def _task(self, entity: Entity) -> Task | None:
         """The task that runs the callback of an entity; None if the entity has nothing."""

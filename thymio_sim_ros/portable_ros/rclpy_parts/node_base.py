@@ -147,10 +147,10 @@ class NodeBase:
         remapped = (one.remapped(full, self._name, self._namespace, is_service=is_service) for one in self._arguments)
         return next((one for one in remapped if one is not None), full)
 
-    def _require_context(self, action: str) -> None:
-        """Raise RCLError after a shutdown of the context."""
+    def _require_context(self, failure: str) -> None:
+        """Raise RCLError after a shutdown of the context; `failure` says what cannot be done."""
         if not self._context.ok():
-            raise RCLError(f"Failed to {action}: rcl node's context is invalid")
+            raise RCLError(f"{failure}: rcl node's context is invalid")
 
     def _endpoint_name(self, name: str, *, is_service: bool = False) -> str:
         """The full name of an endpoint. Raises for one that is not valid."""

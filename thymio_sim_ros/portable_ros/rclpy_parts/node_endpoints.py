@@ -55,7 +55,7 @@ class NodeEndpoints(NodeEntities):
         full = self._endpoint_name(topic)
         _declare_qos_parameters(Publisher, self, full, profile, qos_overriding_options or QoSOverridingOptions(()))
         check_is_valid_msg_type(msg_type)
-        self._require_context("create publisher")
+        self._require_context("Failed to create publisher")
         self._graph.require_topic_type(full, msg_type, self._context)
         group = callback_group or self._default_callback_group
         events = self._events(event_callbacks or PublisherEventCallbacks(), group, topic)
@@ -122,7 +122,7 @@ class NodeEndpoints(NodeEntities):
         full = self._endpoint_name(topic)
         _declare_qos_parameters(Subscription, self, full, profile, qos_overriding_options or QoSOverridingOptions(()))
         check_is_valid_msg_type(msg_type)
-        self._require_context("create subscription")
+        self._require_context("Failed to create subscription")
         self._graph.require_topic_type(full, msg_type, self._context)
         group = callback_group or self._default_callback_group
         events = self._events(event_callbacks or SubscriptionEventCallbacks(), group, topic)
@@ -142,6 +142,7 @@ class NodeEndpoints(NodeEntities):
         callback_group: CallbackGroup | None = None,
     ) -> Client[SrvRequestT, SrvResponseT]:
         """Call a service. Raises InvalidServiceNameException and errors about the type."""
+        self._require_context("failed to create client")
         return self._add_client(Client(self._service_description(srv_type, srv_name, qos_profile, callback_group)))
 
     def create_service(
@@ -154,6 +155,7 @@ class NodeEndpoints(NodeEntities):
         callback_group: CallbackGroup | None = None,
     ) -> Service:
         """Offer a service. Raises InvalidServiceNameException and errors about the type."""
+        self._require_context("failed to create service")
         of = self._service_description(srv_type, srv_name, qos_profile, callback_group)
         return self._add_service(Service(of, callback))
 
@@ -167,6 +169,7 @@ class NodeEndpoints(NodeEntities):
     ) -> Timer:
         """Call back periodically, by the clock of the node unless another one is given."""
         period_ns = int(float(timer_period_sec) * S_TO_NS)
+        self._context.require_ok("failed to create timer")
         group = callback_group or self._default_callback_group
         made = self._owned(
             Timer(callback, group, period_ns, clock or self._clock, context=self._context, autostart=autostart)
@@ -178,6 +181,7 @@ class NodeEndpoints(NodeEntities):
         self, callback: Callable[..., Any], callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
         """Call back when it is triggered."""
+        self._context.require_ok("failed to create guard_condition")
         return self._owned(GuardCondition(callback, callback_group or self._default_callback_group, self._context))
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
@@ -190,27 +194,27 @@ class NodeEndpoints(NodeEntities):
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Remove a publisher; return whether it was one of this node."""
-        return self._remove_with_events(publisher)
+        return isinstance(publisher, Publisher) and self._remove_with_events(publisher)
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
         """Remove a subscription; return whether it was one of this node."""
-        return self._remove_with_events(subscription)
+        return isinstance(subscription, Subscription) and self._remove_with_events(subscription)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
         """Remove a client; return whether it was one of this node."""
-        return self._remove(client)
+        return isinstance(client, Client) and self._remove(client)
 
     def destroy_service(self, service: Service) -> bool:
         """Remove a service; return whether it was one of this node."""
-        return self._remove(service)
+        return isinstance(service, Service) and self._remove(service)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Remove a timer; return whether it was one of this node."""
-        return self._remove(timer)
+        return isinstance(timer, Timer) and self._remove(timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         """Remove a guard condition; return whether it was one of this node."""
-        return self._remove(guard)
+        return isinstance(guard, GuardCondition) and self._remove(guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Remove a rate and its timer."""

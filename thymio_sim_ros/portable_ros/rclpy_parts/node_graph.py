@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.portable_ros.graph.graph import names_and_types
-from thymio_sim_ros.portable_ros.graph.names import expanded
+from thymio_sim_ros.portable_ros.graph.names import expanded, namespace_problem, node_problem
 from thymio_sim_ros.portable_ros.graph.time_base import note_query
 from thymio_sim_ros.portable_ros.messages.type_descriptions import HASH_PREFIX, type_hash
-from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import NodeNameNonExistentError, RCLError
 from thymio_sim_ros.portable_ros.rclpy.duration import Duration, Infinite
 from thymio_sim_ros.portable_ros.rclpy.qos import LivelinessPolicy, QoSProfile
 from thymio_sim_ros.portable_ros.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
@@ -25,6 +25,7 @@ __all__ = ["NodeGraph"]
 NamesAndTypes = list[tuple[str, list[str]]]
 
 _GID_BYTES = 16
+_NO_NODES = "Failed to get node names"
 
 
 class NodeGraph(NodeBase):
@@ -34,26 +35,27 @@ class NodeGraph(NodeBase):
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """The topics that a node publishes. Raises NodeNameNonExistentError."""
-        return self._of_nodes(node_name, node_namespace, lambda one: _topics(one.all_publishers))
+        return self._of_node("publisher", node_name, node_namespace, lambda one: _topics(one.all_publishers))
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """The topics that a node subscribes to. Raises NodeNameNonExistentError."""
-        return self._of_nodes(node_name, node_namespace, lambda one: _topics(one.all_subscriptions))
+        return self._of_node("subscriber", node_name, node_namespace, lambda one: _topics(one.all_subscriptions))
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """The services that a node offers. Raises NodeNameNonExistentError."""
-        return self._of_nodes(node_name, node_namespace, lambda one: _services(one.all_services))
+        return self._of_node("service", node_name, node_namespace, lambda one: _services(one.all_services))
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """The services that a node calls. Raises NodeNameNonExistentError."""
-        return self._of_nodes(node_name, node_namespace, lambda one: _services(one.all_clients))
+        return self._of_node("client", node_name, node_namespace, lambda one: _services(one.all_clients))
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
         """All topics."""
         note_query()
         with self._handle, self._graph.lock:
+            self._require_context("failed to get topic names and types")
             topics = self._graph.topics.items()
             published = ((name, end.msg_type) for name, one in topics for end in one.publishers)
             subscribed = ((name, end.msg_type) for name, one in topics for end in one.subscriptions)
@@ -62,6 +64,7 @@ class NodeGraph(NodeBase):
     def get_service_names_and_types(self) -> NamesAndTypes:
         """All services."""
         with self._handle, self._graph.lock:
+            self._require_context("failed to get service names and types")
             services = (pair for group in self._graph.services.values() for pair in _services(group))
             clients = (pair for group in self._graph.clients.values() for pair in _services(group))
             return names_and_types((*services, *clients))
@@ -72,12 +75,14 @@ class NodeGraph(NodeBase):
 
     def get_fully_qualified_node_names(self) -> list[str]:
         """The full names of all nodes."""
-        with self._graph.lock:
+        with self._handle, self._graph.lock:
+            self._require_context(_NO_NODES)
             return [one.get_fully_qualified_name() for one in self._graph.nodes]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Names and namespaces of all nodes."""
         with self._handle, self._graph.lock:
+            self._require_context(_NO_NODES)
             return [(one.get_name(), one.get_namespace()) for one in self._graph.nodes]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
@@ -87,23 +92,25 @@ class NodeGraph(NodeBase):
     def count_publishers(self, topic_name: str) -> int:
         """The number of publishers of a topic."""
         note_query()
-        return len(self._ends(topic_name, "publishers"))
+        return len(self._ends(topic_name, "publishers", "Error in rcl_count_publishers"))
 
     def count_subscribers(self, topic_name: str) -> int:
         """The number of subscriptions of a topic."""
         note_query()
-        return len(self._ends(topic_name, "subscriptions"))
+        return len(self._ends(topic_name, "subscriptions", "Error in rcl_count_subscribers"))
 
     def count_services(self, service_name: str) -> int:
         """The number of servers of a service."""
         full = self._full(service_name, is_service=True)
         with self._handle, self._graph.lock:
+            self._require_context("Error in rcl_count_services")
             return len(self._graph.services[full])
 
     def count_clients(self, service_name: str) -> int:
         """The number of clients of a service."""
         full = self._full(service_name, is_service=True)
         with self._handle, self._graph.lock:
+            self._require_context("Error in rcl_count_clients")
             return len(self._graph.clients[full])
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
@@ -122,17 +129,24 @@ class NodeGraph(NodeBase):
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait for a node; return whether there is one."""
-        wanted = f"/{fully_qualified_node_name.lstrip('/')}"
+        name = fully_qualified_node_name
+        wanted = name if name.startswith("/") else f"/{name}"
         return self._graph.wait_for(lambda: wanted in self.get_fully_qualified_node_names(), timeout, f"node {wanted}")
 
-    def _of_nodes(
-        self, name: str, namespace: str, listed: Callable[[GraphNode], Iterable[tuple[str, Any]]]
+    def _of_node(
+        self, kind: str, name: str, namespace: str, listed: Callable[[GraphNode], Iterable[tuple[str, Any]]]
     ) -> NamesAndTypes:
+        """What the nodes of a name have. Raises RCLError for names that are not valid, NodeNameNonExistentError."""
+        namespace = namespace or "/"
+        asked = f"{kind} names and types"
         with self._handle, self._graph.lock:
+            self._require_context(f"failed to get {asked}")
+            if problem := node_problem(name) or namespace_problem(namespace):
+                raise RCLError(f"failed to get {asked}: {problem[0]}")
             nodes = [one for one in self._graph.nodes if (one.get_name(), one.get_namespace()) == (name, namespace)]
             if not nodes:
                 raise NodeNameNonExistentError(
-                    f"Failed to get names and types by node: cannot get {namespace} node: node name not found: {name}"
+                    f"cannot get {asked} for nonexistent node: {namespace.rstrip('/')}/{name}"
                 )
             return names_and_types(pair for one in nodes for pair in listed(one))
 
@@ -141,9 +155,10 @@ class NodeGraph(NodeBase):
         validate_full_topic_name(full, is_service=is_service)
         return full
 
-    def _ends(self, topic: str, kind: str) -> list[Any]:
+    def _ends(self, topic: str, kind: str, failure: str) -> list[Any]:
         full = self._full(topic)
         with self._handle, self._graph.lock:
+            self._require_context(failure)
             return list(getattr(self._graph.topics[full], kind)) if full in self._graph.topics else []
 
     def _owned_ends(
@@ -151,8 +166,9 @@ class NodeGraph(NodeBase):
     ) -> list[tuple[GraphNode, Any]]:
         """The endpoints of a topic, each with its node."""
         with self._graph.lock:
+            failure = f"Failed to get information by topic for {kind}"
             owners = {id(end): node for node in self._graph.nodes for end in ends_of(node)}
-            return [(owners[id(end)], end) for end in self._ends(topic, kind)]
+            return [(owners[id(end)], end) for end in self._ends(topic, kind, failure)]
 
 
 def _topics(ends: Iterable[Any]) -> Iterable[tuple[str, Any]]:

@@ -7,6 +7,7 @@ from typing import Generic
 
 from thymio_sim_ros.portable_ros.graph.entity import Entity
 from thymio_sim_ros.portable_ros.messages.message_class import Message, Service, SrvRequestT, SrvResponseT
+from thymio_sim_ros.portable_ros.rclpy._rclpy_pybind11 import require_argument
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup
 from thymio_sim_ros.portable_ros.rclpy.clock import Clock
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSProfile
@@ -39,8 +40,17 @@ class ServiceEntity(Entity, Generic[SrvRequestT, SrvResponseT]):
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Publish the events of this end of the service from now on, stamped by a clock; `OFF` ends it."""
+        """Publish the events of this end of the service from now on, stamped by a clock; `OFF` ends it.
+
+        Raises TypeError for arguments of other types.
+        """
         with self._handle:
+            for found, kind in (
+                (clock, Clock),
+                (service_event_qos_profile, QoSProfile),
+                (introspection_state, ServiceIntrospectionState),
+            ):
+                require_argument("configure_introspection", found, kind)
             if self._events is not None:
                 self._events.destroy()
                 self._events = None
