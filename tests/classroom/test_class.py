@@ -39,6 +39,7 @@ pytestmark = pytest.mark.process
 ADA, BEN = "ada", "ben"
 PROGRAM = "onevent button.forward\nmotor.left.target = 100\n"
 DRAFT = PROGRAM + "motor.right.target ="
+NODE = "import rclpy\n"
 
 
 @pytest.fixture(scope="module")
@@ -196,10 +197,11 @@ def test_a_suite_that_is_killed_starts_again_with_its_work_and_message(group: Ru
         ms.Parameter("/aseba_runtime.script.source", PROGRAM),
         ms.Parameter("/simulator.playground", playground),
         ms.Parameter("/web_ui.draft", DRAFT),
+        ms.Parameter("/web_ui.node_draft", NODE),
     )
     asked(group.bridge_of(ADA), ms.SetParameters(changes, "set"))
     group.request("message", {"pupils": ["ada"], "text": "still there"})
-    works = {"Ada/": "", "Ada/program.aesl": PROGRAM, "Ada/draft.aesl": DRAFT, "Ben/": ""}
+    works = {"Ada/": "", "Ada/program.aesl": PROGRAM, "Ada/draft.aesl": DRAFT, "Ada/draft.py": NODE, "Ben/": ""}
     group.until("ada", lambda _one: zipped(group) == works)
     plan = group.until("ada", lambda one: one["plan"] != group.pupil("ben")["plan"])["plan"]
     before = group.pupil("ada")

@@ -18,7 +18,7 @@ import pytest
 from tests.classroom.test_requests import GIVEN, OPTIONS, PLACE, PUPIL, URL, encoded
 from thymio_sim_ros.access import RefusedError
 from thymio_sim_ros.classroom.address import ClassAddress
-from thymio_sim_ros.classroom.bridge_client import RAISED_HAND, SOURCE
+from thymio_sim_ros.classroom.bridge_client import NODE_DRAFT, RAISED_HAND, SOURCE
 from thymio_sim_ros.classroom.classroom import Classroom
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import ClassFolder
@@ -202,6 +202,28 @@ def test_the_zip_is_read_by_the_grader_with_the_names_of_the_pupils(group: Group
     assert (ada.name, ada.files["bus.aesl"], ada.problem) == ("Ada", b"var mine = 1", "")
     assert ben.name == "Ben"
     assert (jurg.name, jurg.problem) == ("Jürg _ 5b", "no file was handed in: hand in bus.aesl")
+
+
+def test_nodes_are_collected_with_the_names_of_what_they_are_for(group: Group, tmp_path: Path) -> None:
+    ada, ben, _ = group.classroom.seats.values()
+    ben._on_parameter(NODE_DRAFT, "import rclpy\n")
+    number = group.hand_out(kind="mission", name="ros_drive.json", content=encoded(MISSION))
+    group.open("ada", number)
+    ada._on_parameter(NODE_DRAFT, "import rclpy  # 1\n")
+    ada._on_parameter(NODE_DRAFT, "import rclpy  # 2\n")
+    assert group.ask("GET", "missing") == ["Jürg / 5b"]
+    progress = group.ask("GET", "handouts")[0]["progress"]["ada"]
+    assert progress["changed"]
+    assert progress["tries"] == 0
+    zipped = tmp_path / "programs.zip"
+    zipped.write_bytes(Group(group.path).ask("GET", "programs.zip"))
+    found = find(zipped)
+    assert [dict(one.files) for one in found] == [
+        {"ros_drive.py": b"import rclpy  # 2\n"},
+        {"draft.py": b"import rclpy\n"},
+        {},
+    ]
+    assert prepared(found[1], ["ros_drive.py"]).files == {"ros_drive.py": b"import rclpy\n"}
 
 
 def test_names_of_files_are_text_and_differ(group: Group) -> None:

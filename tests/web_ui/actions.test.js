@@ -285,9 +285,13 @@ test("a teacher's pause holds, and the page says so", async () => {
 test("what a pupil writes is sent to the class, and what others write is not", async () => {
   const { actions, asked, store } = prepared();
   store.dispatch({ type: "connected" });
-  await actions.sendDraft("var a");
+  await actions.sendDraft("bus.aesl", "var a");
   assert.deepEqual(asked, []);
   store.dispatch({ type: "parameters", parameters: [{ name: "/web_ui.pupil", value: "Ada" }] });
-  await actions.sendDraft("var a");
-  assert.deepEqual(asked, [["set", [{ name: "/web_ui.draft", value: "var a" }]]]);
+  await actions.sendDraft("bus.aesl", "var a");
+  await actions.sendDraft("bus.py", "import rclpy");
+  assert.deepEqual(asked, [
+    ["set", [{ name: "/web_ui.draft", value: "var a" }]],
+    ["set", [{ name: "/web_ui.node_draft", value: "import rclpy" }]],
+  ]);
 });

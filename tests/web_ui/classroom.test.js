@@ -47,6 +47,7 @@ test("a raised hand needs help, and so does a robot that is stuck in a mission w
 test("the kind of a file that is handed out is that of its content", () => {
   const bytes = (/** @type {string} */ text) => new TextEncoder().encode(text);
   assert.equal(kindOfFile("bus.AESL", bytes("<network>")), "program");
+  assert.equal(kindOfFile("bus.py", bytes("import rclpy")), "program");
   assert.equal(kindOfFile("bus.json", bytes('{"format": 1, "success" : "home"}')), "mission");
   assert.equal(kindOfFile("room.json", bytes('{"format": 1, "title": "A success"}')), "playground");
   assert.equal(kindOfFile("bus.zip", bytes("PK mission.json")), "mission");

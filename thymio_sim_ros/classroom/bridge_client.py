@@ -28,15 +28,16 @@ from thymio_sim_ros.classroom.suite_state import (
     read_try,
 )
 
-__all__ = ["DRAFT", "PLAYGROUND", "PROGRAM_NAME", "RAISED_HAND", "SOURCE", "BridgeClient", "SuiteStatus"]
+__all__ = ["DRAFT", "NODE_DRAFT", "PLAYGROUND", "PROGRAM_NAME", "RAISED_HAND", "SOURCE", "BridgeClient", "SuiteStatus"]
 
 _STATE, _OVERVIEW, _PROGRAM = "/simulator/_state", "/simulator/_overview", "/_aseba/status"
 _MISSION, _TRY = "/simulator/_mission", "/simulator/_mission/try"
 _PAUSE = "/simulator/pause"
 PROGRAM_NAME, SOURCE = "/aseba_runtime.script.name", "/aseba_runtime.script.source"
-PLAYGROUND, DRAFT, RAISED_HAND = "/simulator.playground", "/web_ui.draft", "/web_ui.raised_hand"
+PLAYGROUND, RAISED_HAND = "/simulator.playground", "/web_ui.raised_hand"
+DRAFT, NODE_DRAFT = "/web_ui.draft", "/web_ui.node_draft"
 _PAGE = "/web_ui."
-_WATCHED = (PROGRAM_NAME, SOURCE, PLAYGROUND, DRAFT, RAISED_HAND)
+_WATCHED = (PROGRAM_NAME, SOURCE, PLAYGROUND, DRAFT, NODE_DRAFT, RAISED_HAND)
 _FOLLOWED = (_STATE, _MISSION, _TRY)
 _PING_S, _PONG_S = 10.0, 30.0
 """Time between pings, and until a suite without an answer counts as broken; long, for a machine under load."""

@@ -140,8 +140,8 @@ class Classroom:
     def programs(self) -> bytes:
         """A zip with a folder for each pupil, which `thymio-sim grade` reads.
 
-        It has the program that ran last, a different text of the editor, and the programs for hand-outs under the names
-        of these. The folder of a pupil without any of it is empty.
+        It has the program that ran last, a different text of the editor, a ROS node in Python, and the programs and
+        nodes for hand-outs under the names of these. The folder of a pupil without any of it is empty.
         """
         packed = io.BytesIO()
         folders: list[str] = []
@@ -150,24 +150,30 @@ class Classroom:
                 folders.append(archive_name(seat.place.name, folders))
                 archive.mkdir(folders[-1])
                 for name, text in self._files(seat):
-                    archive.writestr(f"{folders[-1]}/{name}.aesl", text)
+                    archive.writestr(f"{folders[-1]}/{name}", text)
         return packed.getvalue()
 
     def _files(self, seat: Seat) -> Iterator[tuple[str, str]]:
         """The names and texts of what a pupil has written."""
         work = self.folder.work(seat.place)
         if work.program is not None:
-            yield "program", work.program
+            yield "program.aesl", work.program
         if work.draft is not None and work.draft != work.program:
-            yield "draft", work.draft
+            yield "draft.aesl", work.draft
+        nodes = []
         for handout in self.handouts.all():
             if (text := seat.progress.program(handout)) is not None:
-                yield handout.stem, text
+                yield f"{handout.stem}.aesl", text
+            if (text := seat.progress.node(handout)) is not None:
+                nodes.append(text)
+                yield f"{handout.stem}.py", text
+        if work.node is not None and work.node not in nodes:
+            yield "draft.py", work.node
 
     def missing(self) -> list[str]:
         """The names of the pupils who have neither run a program nor written one."""
         works = {seat.place.name: self.folder.work(seat.place) for seat in self.seats.values()}
-        return [name for name, work in works.items() if work.program is None and work.draft is None]
+        return [name for name, work in works.items() if (work.program, work.draft, work.node) == (None, None, None)]
 
     async def _show_notices(self, ids: Iterable[str]) -> None:
         await asyncio.gather(*(self.seats[pupil].show(self._notice(pupil)) for pupil in ids))

@@ -1,7 +1,7 @@
 """The folder of a class: tokens and places in `class.json`, and the work of each pupil in `pupils/<name>/`.
 
-`program.aesl` is the last own program that was run, `draft.aesl` what the editor had last, `work.json` the rest;
-`handouts/` has what the teacher has handed out. Tokens are secrets: the folder can be read by its owner only.
+`program.aesl` is the last own program that was run, `draft.aesl` and `draft.py` what the editor had last, `work.json`
+the rest; `handouts/` has what the teacher has handed out. Tokens are secrets: the folder can be read by its owner only.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from thymio_sim_ros.classroom.pupils import folder_name
 __all__ = ["ClassFolder", "Place", "Work", "read_text", "write_text"]
 
 _FILE = "class.json"
-_PROGRAM, _DRAFT, _WORK, _PARAMETERS = "program.aesl", "draft.aesl", "work.json", "parameters.yaml"
+_PROGRAM, _DRAFT, _NODE, _WORK, _PARAMETERS = "program.aesl", "draft.aesl", "draft.py", "work.json", "parameters.yaml"
 _CODE_LETTERS, _CODE_LENGTH = "abcdefghjkmnpqrstuvwxyz23456789", 6
 """A code that pupils type: no letters that look like others, and 30 bits, since attempts are limited."""
 _REST = ("program_name", "playground", "class_playground")
@@ -53,6 +53,8 @@ class Work:
     """As `load_playground` takes it."""
     class_playground: str = ""
     """The playground of the class at that time: in a lesson with another one, `playground` does not count."""
+    node: str | None = None
+    """The last ROS node in Python in the editor of the page."""
 
 
 class ClassFolder:
@@ -117,12 +119,13 @@ class ClassFolder:
         with contextlib.suppress(ValueError, RecursionError):  # damaged: the programs are files of their own
             rest = json.loads(read_text(self.pupil(place) / _WORK) or "{}")
         known = {name: text for name in _REST if isinstance(rest, dict) and isinstance(text := rest.get(name), str)}
-        return Work(read_text(self.pupil(place) / _PROGRAM), draft=read_text(self.pupil(place) / _DRAFT), **known)
+        program, draft, node = (read_text(self.pupil(place) / name) for name in (_PROGRAM, _DRAFT, _NODE))
+        return Work(program, draft=draft, node=node, **known)
 
     def keep(self, place: Place, work: Work) -> None:
         """Write what a pupil has made; a crash in between leaves each file as it was or as it is. Raises OSError."""
         rest = json.dumps({name: getattr(work, name) for name in _REST}, indent=2) + "\n"
-        for name, text in ((_PROGRAM, work.program), (_DRAFT, work.draft), (_WORK, rest)):
+        for name, text in ((_PROGRAM, work.program), (_DRAFT, work.draft), (_NODE, work.node), (_WORK, rest)):
             path = self.pupil(place) / name
             if text is not None and text != read_text(path):
                 write_text(path, text)

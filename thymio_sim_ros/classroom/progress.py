@@ -23,7 +23,7 @@ class Progress:
 
     opened: str = ""
     changed: str = ""
-    """The last run or try."""
+    """The last run or try, or change of a ROS node."""
     tries: int = 0
     """Programs that were run since it was opened, or tries of a mission."""
     stars: int = 0
@@ -57,7 +57,11 @@ class ProgressLog:
 
     def program(self, handout: Handout) -> str | None:
         """The program that was run last for a hand-out; None: none yet."""
-        return read_text(self._program(handout.id))
+        return read_text(self._program(handout))
+
+    def node(self, handout: Handout) -> str | None:
+        """The ROS node that was written last for a hand-out; None: none yet."""
+        return read_text(self._program(handout, ".py"))
 
     def open(self, handout: Handout) -> None:
         """The pupil has opened it: programs that run from now on are for it, unless it is a playground for them."""
@@ -68,12 +72,15 @@ class ProgressLog:
 
     def run(self, handout: Handout, text: str) -> None:
         """The pupil has run a program while a hand-out was open; tries of a mission are counted by themselves."""
-        path = self._program(handout.id)
-        path.parent.mkdir(exist_ok=True)
-        write_text(path, text)
+        self._write(self._program(handout), text)
         progress = self.of(handout)
         runs = progress.tries if handout.kind == "mission" else progress.tries + 1
         self._keep(handout.id, replace(progress, changed=now(), tries=runs))
+
+    def write_node(self, handout: Handout, text: str) -> None:
+        """The pupil has written a ROS node while a hand-out was open; it need not run, as in a class without nodes."""
+        self._write(self._program(handout, ".py"), text)
+        self._keep(handout.id, replace(self.of(handout), changed=now()))
 
     def tried(self, handout: Handout, attempt: MissionTry) -> None:
         """A try of a mission that was handed out has changed. A new number is another try."""
@@ -89,8 +96,12 @@ class ProgressLog:
         if progress != self.of(handout):
             self._keep(handout.id, progress)
 
-    def _program(self, number: str) -> Path:
-        return self._folder / "handouts" / f"{number}.aesl"
+    def _program(self, handout: Handout, ending: str = ".aesl") -> Path:
+        return self._folder / "handouts" / f"{handout.id}{ending}"
+
+    def _write(self, path: Path, text: str) -> None:
+        path.parent.mkdir(exist_ok=True)
+        write_text(path, text)
 
     def _keep(self, number: str, progress: Progress) -> None:
         self._of[number] = progress

@@ -21,6 +21,7 @@ from websockets.exceptions import WebSocketException
 
 from thymio_sim_ros.classroom.bridge_client import (
     DRAFT,
+    NODE_DRAFT,
     PLAYGROUND,
     PROGRAM_NAME,
     RAISED_HAND,
@@ -306,6 +307,8 @@ class Seat:
             work = replace(work, playground=value, class_playground=self._options.playground)
         elif name == DRAFT and value:
             work = replace(work, draft=value)
+        elif name == NODE_DRAFT and value:
+            work = replace(work, node=value)
         elif name == PROGRAM_NAME and value:
             work = replace(work, program_name=value)
         elif name == SOURCE and value:
@@ -316,8 +319,10 @@ class Seat:
         with self._reporting():
             self._folder.keep(self.place, work)
             handout = self._handouts.find(self.progress.current)
-            if name == SOURCE and handout is not None:
+            if handout is not None and name == SOURCE:
                 self.progress.run(handout, value)
+            elif handout is not None and name == NODE_DRAFT:
+                self.progress.write_node(handout, value)
 
     def _on_try(self, attempt: MissionTry) -> None:
         self._tries.add(attempt)

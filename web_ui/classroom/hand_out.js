@@ -20,7 +20,7 @@ export const LARGEST = 4_000_000;
  * @returns {Kind}
  */
 export function kindOfFile(name, content) {
-  if (/\.(?:aesl|aseba|txt)$/i.test(name)) return "program";
+  if (/\.(?:aesl|aseba|txt|py)$/i.test(name)) return "program";
   let letters = "";
   for (const byte of content) letters += String.fromCharCode(byte);
   if (/\.zip$/i.test(name)) return letters.includes("mission.json") ? "mission" : "playground";
@@ -46,7 +46,7 @@ export function base64(bytes) {
  * @param {(given: Given) => Promise<void>} options.send   throws an Error with the reason of the server
  */
 export function askHandOut({ t, language, pupils, missions, task, send }) {
-  const file = h("input", { type: "file", id: "handout-file", accept: ".aesl,.aseba,.txt,.json,.playground,.xml,.zip" });
+  const file = h("input", { type: "file", id: "handout-file", accept: ".aesl,.aseba,.txt,.py,.json,.playground,.xml,.zip" });
   const link = h("input", { class: "input", id: "handout-link", autocomplete: "off", spellcheck: "false" });
   const groups = missions.map(({ titles, missions: ofStep }) => {
     const group = h("optgroup", { label: titleIn(titles, language) });

@@ -137,6 +137,7 @@ export class ProgramHost {
   /** @type {typeof import("../program_tab/tab.js") | null} */ #module = null;
   /** The language whose view is wanted: loading it takes a while. */ #wanted = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #draftTimer = undefined;
+  #draftName = "";
   /** Done when it is known what the page may do with nodes. */ #learned = Promise.resolve();
   /** @type {{ name: string, text: string } | null} opened when the tab is shown */ #kept = null;
 
@@ -297,8 +298,9 @@ export class ProgramHost {
       const session = new module.EditorSession(localStore, Date.now, openPages(navigator.locks));
       this.session = session;
       session.onWritten = (text) => {
-        if (!isPython(session.workspace.current.name)) this.#sendDraft(text); // a draft is an .aesl file
-        this.onWritten(session.workspace.current.name, text);
+        const { name } = session.workspace.current;
+        this.#sendDraft(name, text);
+        this.onWritten(name, text);
       };
       followLocalStore((key) => session.workspace.storageChanged(key));
       meetOtherTabs(() => {
@@ -332,10 +334,11 @@ export class ProgramHost {
     await (await this.#opened())?.commands.run();
   }
 
-  /** @param {string} text */
-  #sendDraft(text) {
-    clearTimeout(this.#draftTimer);
-    this.#draftTimer = setTimeout(() => void this.context?.actions.sendDraft(text), DRAFT_MS);
+  /** @param {string} name @param {string} text */
+  #sendDraft(name, text) {
+    if (name === this.#draftName) clearTimeout(this.#draftTimer); // the text of another document is still sent
+    this.#draftName = name;
+    this.#draftTimer = setTimeout(() => void this.context?.actions.sendDraft(name, text), DRAFT_MS);
   }
 
   /**

@@ -5,6 +5,7 @@ import { timeDisabledReason } from "../state/disabled_reason.js";
 import { FILE, targets } from "../state/index.js";
 import { PARAMETERS, robotTopic } from "../state/names.js";
 import { kindOf, sentenceOf } from "../browser/foreign_files.js";
+import { isPython } from "../browser/python_name.js";
 import { textOf } from "../browser/text_file.js";
 import { learnParts } from "../playground/parts.js";
 import { textRequest } from "./check_service.js";
@@ -255,11 +256,12 @@ export class Actions {
     return this.runtime.load(this.owner, name, text, this.language());
   }
 
-  /** Send what a pupil has written to the class, which collects it (docs/classroom.md). @param {string} text */
-  async sendDraft(text) {
+  /** Send what a pupil has written to the class, which collects it (docs/classroom.md). @param {string} name @param {string} text */
+  async sendDraft(name, text) {
     const { connection, parameters, readOnly } = this.store.state;
     if (connection !== "connected" || readOnly || !parameters[PARAMETERS.pupil]) return;
-    await this.client.setParameters([{ name: PARAMETERS.draft, value: text }]);
+    const parameter = isPython(name) ? PARAMETERS.nodeDraft : PARAMETERS.draft;
+    await this.client.setParameters([{ name: parameter, value: text }]);
   }
 
   /** Raise a hand, which the teacher of the class sees, or lower it. @param {boolean} raised */

@@ -154,6 +154,7 @@ export const PARAMETERS = /** @type {const} */ ({
   raisedHand: "/web_ui.raised_hand",
   handouts: "/web_ui.handouts",
   draft: "/web_ui.draft",
+  nodeDraft: "/web_ui.node_draft",
 });
 
 /**

@@ -77,6 +77,7 @@ class WebParams:
     raised_hand: bool = param(False, "Whether the pupil has raised a hand on the page, until the teacher lowers it")
     handouts: str = param("[]", "Files that a teacher has handed out, as JSON, which the page of a pupil offers")
     draft: str = param("", "Text that the page of a pupil has in its editor, as an .aesl file")
+    node_draft: str = param("", "ROS node in Python that the page of a pupil has in its editor")
 
 
 class WebPage:
