@@ -28,7 +28,9 @@ from thymio_sim_ros.classroom.suite_state import MissionTry
 from thymio_sim_ros.files import resources
 from thymio_sim_ros.grading.submissions import find, prepared
 
-MISSION = json.dumps({"format": 1, "title": "The bus", "success": "home"})
+STILL = {"format": 1, "title": "The bus", "facts": {"home": {"kind": "still", "text": "It waits"}}}
+MISSION = json.dumps(STILL | {"playground": "base", "success": {"hold": "home", "for_s": 1}})
+DRIVE = "motor.left.target = 200\nmotor.right.target = 200\n"
 STRANGE = "../../<script>alert(1)</script>\0:bus?.aesl"
 
 
@@ -62,6 +64,12 @@ class Group:
     def page(self, pupil: str) -> Any:
         """The hand-outs on the page of a pupil."""
         return json.loads(str(self.classroom.seats[pupil]._page["handouts"]))
+
+
+@pytest.fixture
+def unchecked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Missions are handed out without a process that checks them."""
+    monkeypatch.setattr("thymio_sim_ros.classroom.handouts.check_mission", lambda _name, _content: None)
 
 
 @pytest.fixture
@@ -144,6 +152,7 @@ def test_a_solution_names_its_task(group: Group) -> None:
     assert [one["solution_of"] for one in group.page("ben")] == ["", "bus.aesl"]
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_stars_tries_and_time_of_a_mission_come_from_the_suite(group: Group) -> None:
     number = group.hand_out(kind="mission", name="bus.json", content=encoded(MISSION))
     seat = group.classroom.seats["ada"]
@@ -164,6 +173,7 @@ def test_stars_tries_and_time_of_a_mission_come_from_the_suite(group: Group) -> 
     assert seat.progress.program(group.classroom.handouts.find(number)) == "var mine = 1"
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_a_shipped_mission_is_handed_out_by_its_name_and_to_more_pupils_later(group: Group) -> None:
     number = group.hand_out(kind="mission", name="forward", content="", title="Off you go", pupils=["ada"])
     assert group.open("ada", number) == {"kind": "mission", "name": "forward", "content": ""}
@@ -177,6 +187,34 @@ def test_a_shipped_mission_is_handed_out_by_its_name_and_to_more_pupils_later(gr
     assert [one["name"] for one in group.ask("GET", "handouts")] == ["forward", "forward 2.json"]
     with pytest.raises(RefusedError):
         group.hand_out(kind="mission", name="../forward", content="")
+
+
+def zipped(**files: str) -> str:
+    """The zip of a mission in base64; a double underscore stands for the dot of a name."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for name, text in files.items():
+            archive.writestr(name.replace("__", "."), text)
+    return base64.b64encode(packed.getvalue()).decode()
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (encoded('{"format": 1}'), "bus.json: success: found nothing, expected a condition"),
+        (
+            zipped(mission__json=json.dumps({**json.loads(MISSION), "solutions": {"text": "go.aesl"}, "time_s": 3}),
+                   go__aesl=DRIVE),
+            "bus.zip: solutions.text: found 0 of 1 stars, expected all of them",
+        ),
+    ],
+)  # fmt: skip
+def test_a_mission_is_checked_before_anything_is_handed_out(group: Group, content: str, reason: str) -> None:
+    name = "bus.zip" if base64.b64decode(content).startswith(b"PK") else "bus.json"
+    with pytest.raises(RefusedError, match=reason):
+        group.hand_out(kind="mission", name=name, content=content)
+    assert group.ask("GET", "handouts") == []
 
 
 def test_the_table_has_a_row_for_each_pupil_and_says_who_is_late(group: Group) -> None:
@@ -204,6 +242,7 @@ def test_the_zip_is_read_by_the_grader_with_the_names_of_the_pupils(group: Group
     assert (jurg.name, jurg.problem) == ("Jürg _ 5b", "no file was handed in: hand in bus.aesl")
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_nodes_are_collected_with_the_names_of_what_they_are_for(group: Group, tmp_path: Path) -> None:
     ada, ben, _ = group.classroom.seats.values()
     ben._on_parameter(NODE_DRAFT, "import rclpy\n")

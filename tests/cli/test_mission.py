@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -82,6 +83,37 @@ def test_a_solution_must_pass_and_a_start_must_not(capsys: pytest.CaptureFixture
     assert code == 1
     assert "solutions.text: found 0 of 1 stars, expected all of them" in output
     assert "programs.text: found a start that passes, expected something to do" in output
+
+
+def untrusted(capsys: pytest.CaptureFixture[str], path: Path) -> tuple[int, str]:
+    """Check the file of someone else."""
+    code = main(["mission", str(path), "--check", "--untrusted"])
+    said = capsys.readouterr()
+    return code, said.out + said.err
+
+
+def test_nodes_of_an_untrusted_mission_are_not_run(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path, trace = tmp_path / "wait.json", tmp_path / "has_run"
+    (tmp_path / "node.py").write_text(f"open({str(trace)!r}, 'w')")
+    path.write_text(json.dumps(WAITING | {"solutions": {"ros": "node.py"}}))
+    assert untrusted(capsys, path) == (0, "solutions.ros: not run\n")
+    assert not trace.exists()
+    path.write_text(json.dumps(WAITING | {"solutions": {"ros": "node.py"}, "robot": "thymio9"}))
+    assert untrusted(capsys, path)[0] == 2
+
+
+def test_an_untrusted_mission_has_files_of_its_own_only(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "wait.json"
+    path.write_text(json.dumps(WAITING | {"playground": str(COURSE / "1-buttons" / "parking.json")}))
+    code, said = untrusted(capsys, path)
+    assert code == 2
+    assert "playground: found " in said
+    with zipfile.ZipFile(tmp_path / "wait.zip", "w") as archive:
+        archive.writestr("mission.json", json.dumps(WAITING | {"playground": "room.json"}))
+        archive.writestr("room.json", "{")
+    code, said = untrusted(capsys, tmp_path / "wait.zip")
+    assert code == 2
+    assert said.startswith("thymio-sim: room.json: ")
 
 
 def test_missions_that_lead_back_to_one_before_are_reported(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

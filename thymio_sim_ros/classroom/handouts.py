@@ -23,6 +23,7 @@ from aseba_vm.aesl.reader import read as read_aesl
 from aseba_vm.aesl.text_decoding import decode
 from aseba_vm.cli.output import write_file
 from aseba_vm.errors import AsebaError
+from thymio_sim_ros.classroom.check_mission import check_mission
 from thymio_sim_ros.classroom.errors import ClassError
 from thymio_sim_ros.classroom.folder import read_text, write_text
 from thymio_sim_ros.classroom.suite_state import MissionTry
@@ -204,8 +205,8 @@ def checked_content(kind: str, name: str, encoded: str) -> bytes:
                 read_aesl(text, is_strict=False)
         elif kind == "playground":
             load_playground(f"data:;name={_file_name(kind, name).replace(';', '_')};base64,{encoded}")
-        elif not content.startswith(b"PK"):
-            _check_mission(content)
+        else:
+            check_mission(_file_name(kind, name), content)
     except (AsebaError, ThymioSimError, OSError, ValueError, RecursionError) as error:
         text = str(error)
         raise ClassError(text if text.startswith(f"{name}: ") else f"{name}: {text}") from error
@@ -220,13 +221,6 @@ def _shipped() -> set[str]:
         return {name for step in listed["steps"] for name in step["missions"]}
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ClassError(f"{folder}/index.json: {error}; expected the list of missions: install again") from error
-
-
-def _check_mission(content: bytes) -> None:
-    """Raise ValueError for what is no mission at all: the simulator of the pupil, which reads it, says more."""
-    fields = json.loads(content.decode("utf-8-sig"))
-    if not isinstance(fields, dict) or "success" not in fields:
-        raise ValueError("expected a mission: a JSON file with the field success (docs/missions.md)")
 
 
 def _file_name(kind: str, name: str) -> str:
