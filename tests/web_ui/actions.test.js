@@ -282,6 +282,15 @@ test("a teacher's pause holds, and the page says so", async () => {
   assert.deepEqual(asked, [["call", "/simulator/pause", { data: false }]]);
 });
 
+test("solutions that do not pass come from the simulator, or why they cannot run", async () => {
+  const results = [{ successful: true, reason: '{"vpl": [true, false]}' }];
+  const { actions, asked } = prepared({ value: { results } });
+  assert.deepEqual(await actions.checkMission("bus.zip", new Uint8Array([1])), { failing: { vpl: [true, false] }, reason: "" });
+  assert.equal(asked[0][1], "/simulator/check_mission");
+  results[0] = { successful: false, reason: "line 1: no" };
+  assert.deepEqual(await actions.checkMission("bus.zip", new Uint8Array([1])), { failing: {}, reason: "line 1: no" });
+});
+
 test("what a pupil writes is sent to the class, and what others write is not", async () => {
   const { actions, asked, store } = prepared();
   store.dispatch({ type: "connected" });

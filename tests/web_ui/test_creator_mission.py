@@ -74,6 +74,7 @@ def make(page):
     page.fill("#mission-hints", "Turn left.\nThen stop.")
     page.click("[data-language=vpl]")  # the text is finished by this press, which counts
     wait_for_mission(page, "mission.hints.length === 2 && !mission.languages.includes('vpl')")
+    press(page, "[data-programs=solutions] [data-verb=take]", "'text' in mission.solutions")  # it does nothing
 
 
 def test_a_mission_is_made_saved_and_opened_again(at_rest, page, tmp_path):
@@ -87,6 +88,7 @@ def test_a_mission_is_made_saved_and_opened_again(at_rest, page, tmp_path):
     saved = tmp_path / saving.value.suggested_filename
     assert saved.name == "My_playground.zip"
     saving.value.save_as(saved)
+    page.locator(".notice", has_text="The solution “Text” does not pass: it gets 0 of 3 stars.").wait_for()
     with zipfile.ZipFile(saved) as archive:
         archive.extractall(tmp_path)
     mission = load_mission(tmp_path / "mission.json")

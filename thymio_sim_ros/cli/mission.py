@@ -22,6 +22,7 @@ from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.grading import assignment as assignments
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.missions import Judge, Mission, MissionError, Verdict, load_mission
+from thymio_sim_ros.missions.check import is_node, program_runs
 from thymio_sim_ros.missions.facts import Measured
 from thymio_sim_ros.missions.shipped import Step, find_mission, index, shipped
 from thymio_sim_ros.missions.trial import judged_run
@@ -31,8 +32,6 @@ from thymio_sim_ros.sim.model.fields import FieldError
 __all__ = ["run"]
 
 NOT_PASSED = 1
-_NODE = ".py"
-_NOT_RUN = "not run"
 _DONE, _OPEN = "[x]", "[ ]"
 _STAR, _NO_STAR = "★", "☆"
 
@@ -74,25 +73,17 @@ def _checked(mission: Mission, path: Path, seed: int, *, may_run_nodes: bool) ->
     files = {key: name for key, name in named.items() if Path(name).suffix}
     mistakes = [f"{path}: {key}: found no file {name}" for key, name in files.items() if not Path(name).is_file()]
     mistakes += _circles(mission, path)
-    lines = []
-    runs = [("solutions", *each) for each in mission.solutions.items()]
-    runs += [("programs", *each) for each in mission.programs.items()]
-    for group, language, program in runs:
-        if program.endswith(_NODE) and not may_run_nodes:
-            lines.append(f"{group}.{language}: {_NOT_RUN}")
-            continue
-        verdict = _judge(mission, path, program, seed).verdict
-        lines.append(f"{group}.{language}: {_stars(verdict)} {verdict.state.value} after {verdict.at_s:.2f} s")
-        if group == "programs" and verdict.is_passed:
-            mistakes.append(f"{path}: programs.{language}: found a start that passes, expected something to do")
-        elif group == "solutions" and not all(verdict.stars):
-            found = f"{sum(verdict.stars)} of {len(verdict.stars)} stars"
-            mistakes.append(f"{path}: solutions.{language}: found {found}, expected all of them")
+
+    def judge(program: str) -> Judge | None:
+        return _judge(mission, path, program, seed) if may_run_nodes or not is_node(program) else None
+
+    runs = list(program_runs(mission, judge))
+    if all(run.verdict is None for run in runs):
+        _judge(mission, path, NO_PROGRAM, seed)  # refuses wrong names and zones
+    lines = [f"{run.key}: {_ended(run.verdict)}" for run in runs]
     if not mission.solutions:
         lines.append("no solutions: whether it can be passed is not checked")
-    if all(line.endswith(_NOT_RUN) for line in lines if line.startswith("solutions")):
-        _judge(mission, path, NO_PROGRAM, seed)  # refuses wrong names and zones
-    return lines, mistakes
+    return lines, mistakes + [f"{path}: {run.key}: {run.mistake}" for run in runs if run.mistake]
 
 
 def _circles(mission: Mission, path: Path) -> list[str]:
@@ -164,7 +155,7 @@ def _mission(path: Path, folder: Path | None = None) -> Mission:
 def _judge(mission: Mission, path: Path, program: str, seed: int) -> Judge:
     """The judge of a whole run of an Aseba program, or of a ROS node in Python."""
     try:
-        if program.endswith(_NODE):
+        if is_node(program):
             return _judged_node(mission, Path(program), seed)
         return judged_run(mission, program, seed=seed)
     except FieldError as error:
@@ -195,6 +186,10 @@ def _judged_node(mission: Mission, program: Path, seed: int) -> Judge:
 
 def _stars(verdict: Verdict) -> str:
     return "".join(_STAR if has else _NO_STAR for has in verdict.stars)
+
+
+def _ended(verdict: Verdict | None) -> str:
+    return "not run" if verdict is None else f"{_stars(verdict)} {verdict.state.value} after {verdict.at_s:.2f} s"
 
 
 def _report(mission: Mission, judge: Judge, language: str) -> str:

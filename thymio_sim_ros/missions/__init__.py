@@ -10,6 +10,7 @@ reader        reads a file; errors name the field
 schema        the JSON schema of files, for editors
 judge         a mission and an engine: checklist, stars, reasons
 trial         a whole run of a program
+check         whether solutions pass and start programs do not
 shipped       the missions that are installed with the code, in order
 live          a mission on an engine that runs live: tries, trouble
 description   a mission and its try as JSON values

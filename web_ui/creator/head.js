@@ -174,6 +174,20 @@ export class Head {
     return { name: session.fileName.replace(/json$/, "zip"), content: pack(playground, (goal) => usualText(labels.t, goal)) };
   }
 
+  /** Say which solutions of a mission do not pass. @param {{ name: string, content: Uint8Array }} file  as `packMission` gives it */
+  async checkMission({ name, content }) {
+    const { session, context, labels } = this.options;
+    const { actions, store } = context;
+    const hasSolutions = Object.keys(session.model.playground.mission?.solutions ?? {}).length > 0;
+    if (!hasSolutions || store.state.connection !== "connected") return;
+    const { failing, reason } = await actions.checkMission(name, content);
+    const sentences = Object.entries(failing).map(([language, stars]) =>
+      labels.t("mission.failing", { language: labels.t(`mission.language.${language}`), count: stars.filter(Boolean).length, all: stars.length }),
+    );
+    const text = reason || sentences.join(" ");
+    if (text !== "") store.dispatch({ type: "notice", level: "warning", text });
+  }
+
   #save() {
     const { session, report } = this.options;
     const isMission = session.model.playground.mission !== undefined;
@@ -182,6 +196,7 @@ export class Head {
     download(file.name, file.content, isMission ? "application/zip" : "application/json");
     session.noteSaved();
     report({ word: "status.saved", values: { name: file.name } });
+    if (typeof file.content !== "string") void this.checkMission({ name: file.name, content: file.content });
   }
 
   #share() {

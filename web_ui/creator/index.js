@@ -131,6 +131,11 @@ export class Creator {
     return this.head.packMission();
   }
 
+  /** Say which solutions of the mission do not pass. @param {{ name: string, content: Uint8Array }} file */
+  checkMission(file) {
+    return this.head.checkMission(file);
+  }
+
   /** Open a playground file that was dropped. @param {File} file @param {Place} place */
   open(file, place) {
     void this.head.open(file, place);

@@ -241,8 +241,9 @@ export class CreatorHost {
     session.keep();
     if (session.model.playground.mission !== undefined) {
       const mission = creator.packMission();
-      if (mission !== null && (await actions.startMission(mission.name, mission.content))) this.close();
-      return;
+      if (mission === null || !(await actions.startMission(mission.name, mission.content))) return;
+      this.close();
+      return creator.checkMission(mission);
     }
     const { fileName, text: content } = session;
     await actions.loadPlayground(fileName, new TextEncoder().encode(content));

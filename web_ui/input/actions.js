@@ -39,6 +39,7 @@ const OCCUPIED = /: occupied by '(.*)'$/s;
 export const RUN_LOG = "/simulator/get_run_log";
 /** The service that starts a mission. */
 export const START_MISSION = "/simulator/start_mission";
+export const CHECK_MISSION = "/simulator/check_mission";
 /** The service that has the primitives of shapes. */
 export const PRIMITIVES = "/simulator/get_primitives";
 
@@ -232,6 +233,21 @@ export class Actions {
     this.#report(START_MISSION, { ok: successful, message: reason }, this.t("mission.refused"));
     if (successful && this.store.state.simulator?.paused) await this.pause(false);
     return successful;
+  }
+
+  /**
+   * Run the solutions of a mission in the simulator. Returns those that do not get all stars, by language with what they
+   * get, and why they cannot run, else "".
+   *
+   * @param {string} name
+   * @param {Uint8Array} content   of its file
+   * @returns {Promise<{ failing: Record<string, boolean[]>, reason: string }>}
+   */
+  async checkMission(name, content) {
+    const value = { type: STRING, string_value: dataUrl(name, content) };
+    const answer = await this.client.call(CHECK_MISSION, { parameters: [{ name, value }] });
+    const { successful, reason } = answer.value?.results?.[0] ?? { successful: answer.ok, reason: answer.message };
+    return successful ? { failing: JSON.parse(reason || "{}"), reason: "" } : { failing: {}, reason };
   }
 
   endMission() {

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import io
 import json
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -25,14 +27,20 @@ BUS = COURSE / "3-blocks" / "mission.json"
 SOLUTION = COURSE / "3-blocks" / "programs" / "solution.aesl"
 
 
-def start(ros, name, file=None):
-    """Start a mission; returns the reason of a refusal."""
+def ask(ros, service, name, file=None):
+    """The result of a service for a shipped mission or a file."""
     value = ParameterValue()
     if file is not None:
         value.type = ParameterType.PARAMETER_STRING
         value.string_value = f"data:;name={name};base64,{base64.b64encode(file).decode()}"
     request = SetParameters.Request(parameters=[Parameter(name=name, value=value)])
-    (result,) = ros.call(SetParameters, "/simulator/start_mission", request).results
+    (result,) = ros.call(SetParameters, f"/simulator/{service}", request).results
+    return result
+
+
+def start(ros, name, file=None):
+    """Start a mission; returns the reason of a refusal."""
+    result = ask(ros, "start_mission", name, file)
     assert result.successful == (not result.reason)
     return result.reason
 
@@ -103,6 +111,33 @@ def test_another_seed_keeps_the_mission(ros, simulation):
     sim.step(0.1)
     assert latest(ros, "/simulator/_mission/try")["state"] == "running"
     assert sim.simulator.missions.live.verdict.at_s == 0.1
+
+
+def zipped(**members):
+    """A mission in which the robot has to stand for a second, as a zip with solutions."""
+    mission = {
+        "format": 1, "title": "Wait", "playground": "base", "time_s": 2.0,
+        "facts": {"a": {"kind": "still", "text": "It stands"}}, "success": {"hold": "a", "for_s": 1.0},
+    }  # fmt: skip
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr("mission.json", json.dumps(mission | members))
+        archive.writestr("wait.aesl", "var a\n")
+        archive.writestr("go.aesl", "motor.left.target = 200\nmotor.right.target = 200\n")
+        archive.writestr("node.py", "raise SystemExit(1)\n")
+    return packed.getvalue()
+
+
+def test_solutions_that_do_not_pass_are_named_and_the_open_mission_goes_on(ros, simulation):
+    sim = simulation(playground="base")
+    assert start(ros, str(BUS)) == ""
+    file = zipped(solutions={"text": "go.aesl", "vpl": "wait.aesl", "ros": "node.py"})
+    result = ask(ros, "check_mission", "wait.zip", file)
+    assert (result.successful, json.loads(result.reason)) == (True, {"text": [False]})
+    result = ask(ros, "check_mission", "wait.zip", zipped(solutions={"text": "none.aesl"}))
+    assert not result.successful
+    assert "none.aesl" in result.reason
+    assert sim.simulator.missions.live.mission.title == "One round by bus"
 
 
 def test_a_mission_that_ends_is_not_judged_any_more(ros, simulation):

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import base64
 import binascii
+import contextlib
 import hashlib
 import json
 import re
 import tempfile
 import time
 import urllib.parse
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,11 +24,12 @@ from thymio_sim_ros.engine.inputs import Controlled
 from thymio_sim_ros.files.loading import load_playground
 from thymio_sim_ros.files.resources import ResourceError
 from thymio_sim_ros.missions import Mission, MissionError, load_mission
+from thymio_sim_ros.missions.check import is_node, program_runs
 from thymio_sim_ros.missions.description import described, progress
 from thymio_sim_ros.missions.documents import mission_after
 from thymio_sim_ros.missions.live import LiveMission, check_fits
 from thymio_sim_ros.missions.shipped import find_mission, shipped
-from thymio_sim_ros.missions.trial import programs_of_others
+from thymio_sim_ros.missions.trial import judged_run, programs_of_others
 from thymio_sim_ros.ros.rclpy_ext.local_node import LocalNode
 from thymio_sim_ros.ros.simulator.parameter_callbacks import ParameterCallbacks
 from thymio_sim_ros.ros.simulator.robot_endpoint_set import RobotEndpointSet
@@ -108,6 +110,16 @@ class MissionEndpoints:
         following = Path(mission.next).stem if mission.next else mission_after(self._name)
         self._publish_mission(opened.content | {"name": self._name, "robot": robot, "next": following})
         self._publish_try()
+
+    def check(self, name: str, value: str) -> str:
+        """Run the solutions of a file that a client has sent, but no ROS nodes. The world goes on meanwhile.
+
+        Returns those that do not get all stars as JSON: language → which stars. Raises MissionError, ValueError.
+        """
+        try:
+            return self._runner.run_beside(lambda: _failing(name, value))
+        except (ResourceError, PlaygroundError, ProgramError, OSError) as error:
+            raise ValueError(str(error)) from error
 
     def end(self) -> None:
         """Judge no more."""
@@ -194,6 +206,16 @@ def _open(name: str, value: str) -> _Opened:
         path = find_mission(name)
         mission = load_mission(path)
         return _opened(path, mission, load_playground(mission.playground)[1])
+    with _uploaded(name, value) as (path, mission):
+        _, playground = load_playground(mission.playground)
+        if Path(mission.playground).suffix:  # a file of this folder, which the simulator's parameter shall not name
+            mission = replace(mission, playground=writer.dumps(playground))
+        return _opened(path, mission, playground)
+
+
+@contextlib.contextmanager
+def _uploaded(name: str, value: str) -> Iterator[tuple[Path, Mission]]:
+    """The mission of a client's file, in a folder that is there meanwhile."""
     with tempfile.TemporaryDirectory(prefix="mission-") as temporary:
         folder = Path(temporary)
         path = _unpacked(name, value, folder)
@@ -201,10 +223,21 @@ def _open(name: str, value: str) -> _Opened:
             mission = load_mission(path, folder=folder)
         except MissionError as error:
             raise MissionError(path.name, FieldError(error.key, error.found, error.expected)) from error
-        _, playground = load_playground(mission.playground)
-        if Path(mission.playground).suffix:  # a file of this folder, which the simulator's parameter shall not name
-            mission = replace(mission, playground=writer.dumps(playground))
-        return _opened(path, mission, playground)
+        yield path, mission
+
+
+def _failing(name: str, value: str) -> str:
+    """The solutions of a client's mission that do not get all stars, as JSON."""
+    with _uploaded(name, value) as (path, mission):
+        try:
+            runs = program_runs(
+                mission, lambda program: None if is_node(program) else judged_run(mission, program), ("solutions",)
+            )
+            return json.dumps(
+                {run.language: list(run.verdict.stars) for run in runs if run.verdict is not None and run.mistake}
+            )
+        except FieldError as error:
+            raise MissionError(path.name, error) from error
 
 
 def _opened(path: Path, mission: Mission, playground: Playground) -> _Opened:

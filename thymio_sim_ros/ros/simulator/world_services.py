@@ -71,6 +71,11 @@ SERVICES: Mapping[str, Service] = {
         "load the playground of a mission and judge its tries: name of a shipped mission; for another one, any name → "
         "its file as a data URL",
     ),
+    "~/check_mission": Service(
+        SetParameters,
+        "run the solutions of a mission, but no nodes: any name → its file as a data URL; `reason`: JSON with those "
+        "that do not get all stars, language → a boolean for each star",
+    ),
     "~/end_mission": Service(Trigger, "judge no more; the playground stays"),
 }
 """All services of the simulator for the world as a whole."""
@@ -122,6 +127,7 @@ class WorldServices:
             "~/get_playground": self._get_playground,
             "~/get_run_log": self._get_run_log,
             "~/start_mission": self._each(lambda name, value: self._missions.start(name, value.string_value)),
+            "~/check_mission": self._each(lambda name, value: self._missions.check(name, value.string_value)),
             "~/end_mission": self._end_mission,
         }
         self._services = [
