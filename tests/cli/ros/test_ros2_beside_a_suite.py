@@ -61,14 +61,29 @@ class Command:
         import os
         print(*os.listdir(f"{get_package_prefix(package)}/lib/{package}"))
 
+    def interface(self, args, verb, name):
+        from ament_index_python import get_resource
+        package, form, short = name.split("/")
+        listed, prefix = get_resource("rosidl_interfaces", package)
+        print(f"{form}/{short}.{form}" in listed.splitlines())
+        with open(f"{prefix}/share/{name}.{form}", encoding="utf-8") as file:
+            print(file.read(), end="")
+
     def launch(self, args, *words):
         return subprocess.run(["ros2", "node", "list"]).returncode or 1
 """,
+    "ros2interface/__init__.py": "",
     "ros2launch/__init__.py": "",
     "ros2node/__init__.py": "",
     "ros2pkg/__init__.py": "",
     "ros2run/__init__.py": "",
 }
+DEFINITIONS = {
+    "msg/Word.msg": "string text\n",
+    "srv/Ask.srv": "string word\n---\nint32 count\n",
+    "action/Say.action": "string word\n---\n---\nint32 said\n",
+}
+"""The interfaces of a package of the workspace, by their files."""
 TALKER = """\
 import sys
 import rclpy
@@ -120,9 +135,12 @@ def workspace(tmp_path: Path) -> Path:
     (lesson / "lesson").mkdir()
     (lesson / "lesson" / "__init__.py").touch()
     (lesson / "lesson" / "talker.py").write_text(TALKER, encoding="utf-8")
-    messages = make_package(folder / "src" / "course" / "lesson_messages", cmake="rosidl_generate_interfaces()")
-    (messages / "msg").mkdir()
-    (messages / "msg" / "Word.msg").write_text("string text\n", encoding="utf-8")
+    messages = make_package(
+        folder / "src" / "course" / "lesson_messages", cmake="rosidl_generate_interfaces(lesson_messages msg/wrong.msg)"
+    )
+    for file, text in DEFINITIONS.items():
+        (messages / file).parent.mkdir(exist_ok=True)
+        (messages / file).write_text(text, encoding="utf-8")
     make_package(folder / "src" / "fast", cmake="add_executable(fast fast.cpp)")
     return folder
 
@@ -191,6 +209,32 @@ def test_the_examples_are_programs_and_those_of_the_suite_say_that_it_is_there(r
 def test_packages_need_no_server(ros2) -> None:
     done = ros2("--connect", f"ws://127.0.0.1:{free_port()}", "pkg", "executables", "lesson")
     assert (done.returncode, done.stdout, done.stderr) == (0, "talker\n", "a line of setup.py\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("lesson_messages/msg/Word", "string text\n"),
+        ("lesson_messages/srv/Ask", "string word\n---\nint32 count\n"),
+        ("lesson_messages/action/Say", "string word\n---\n---\nint32 said\n"),
+        ("std_msgs/msg/Bool", "bool data\n"),
+        ("turtlesim/srv/Kill", "string name\n---\n"),
+    ],
+)
+def test_interfaces_of_the_workspace_and_of_the_graph_are_in_the_index(ros2, name: str, text: str) -> None:
+    done = ros2("--connect", f"ws://127.0.0.1:{free_port()}", "interface", "show", name)
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"True\n{text}", "")
+
+
+def test_a_package_with_a_wrong_definition_is_left_out_with_the_reason(ros2, workspace: Path) -> None:
+    wrong = workspace / "src" / "course" / "lesson_messages" / "msg" / "wrong.msg"
+    wrong.write_text("string text\n", encoding="utf-8")
+    done = ros2("interface", "show", "std_msgs/msg/Bool")
+    assert (done.returncode, done.stdout) == (0, "True\nbool data\n")
+    assert done.stderr == (
+        f"thymio-sim ros2: {wrong}: found the name 'wrong', expected one such as AddThreeInts; the interfaces of"
+        " lesson_messages are left out\n"
+    )
 
 
 def test_launched_processes_find_ros2_and_a_failed_launch_names_packages_that_need_a_build(ros2) -> None:

@@ -15,6 +15,7 @@ from thymio_sim_ros import course_packages
 from thymio_sim_ros.cli.errors import UsageError
 from thymio_sim_ros.cli.ros import env, ros2_installation
 from thymio_sim_ros.cli.ros.graph_choice import choose_graph
+from thymio_sim_ros.cli.ros.interface_index import installed_interfaces
 from thymio_sim_ros.cli.ros.membership import Membership, add_membership_options, interruptible, membership
 from thymio_sim_ros.cli.ros.overlay import Overlay
 
@@ -74,7 +75,8 @@ def run(argv: Sequence[str]) -> int:
         elif command in _OF_PACKAGES and options.words[1:2] != ["create"]:
             code = _run_with_packages(main, options)
         else:
-            code = main(extension=_WithoutDaemon())
+            with installed_interfaces() if command == "interface" else contextlib.nullcontext():
+                code = main(extension=_WithoutDaemon())
     if isinstance(code, str):  # the reason of a failure
         print(code, file=sys.stderr)
         return _FAILED
