@@ -1,8 +1,9 @@
 """Look at an installation as `ros2 pkg`, `ros2 run` and `ros2 launch` do, then run every executable.
 
-    python .ci/installed.py [--prefix FOLDER]    FOLDER: where the ament index must find the package
+    python .ci/installed.py [--prefix FOLDER] [--package NAME]    FOLDER: where the ament index must find the package
 
-Each executable has to appear in the graph as the node it is named after, and to end with exit code 0 on SIGINT.
+NAME: this package, or that of the tutorial on packages. Each executable has to appear in the graph as the node it is
+named after, and to end with exit code 0 on SIGINT.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ from ament_index_python.packages import get_package_prefix, get_package_share_di
 from rclpy.node import Node
 
 PACKAGE = "thymio_sim_ros"
-# Executable → (arguments, nodes that must appear). Port 0 takes a free one.
-EXECUTABLES = {
+# Executable → (arguments, nodes that must appear), by package. Port 0 takes a free one.
+OURS = {
     "simulator": ([], {"simulator"}),
     "aseba_runtime": ([], {"aseba_runtime"}),
     "foxglove_bridge": (["-p", "port:=0"], {"foxglove_bridge"}),
@@ -43,7 +44,11 @@ EXECUTABLES = {
         )
     },
 }
-SHARED = ["package.xml", "launch/thymio.launch.py", "playgrounds/line.json", "rviz/thymio.rviz"]
+EXECUTABLES = {PACKAGE: OURS, "my_robot": {"circle": ([], {"circle"})}}
+SHARED = {
+    PACKAGE: ["package.xml", "launch/thymio.launch.py", "playgrounds/line.json", "rviz/thymio.rviz"],
+    "my_robot": ["package.xml"],
+}
 DEADLINE_S = 60.0
 
 
@@ -51,12 +56,14 @@ def main() -> int:
     """0 when everything is there and runs; else the first thing that is not, on stderr, and 1."""
     parser = argparse.ArgumentParser(description="Check an installation of thymio_sim_ros.")
     parser.add_argument("--prefix", type=Path, default=Path(sys.prefix))
-    wanted = parser.parse_args().prefix.resolve()
-    prefix = Path(get_package_prefix(PACKAGE))
+    parser.add_argument("--package", choices=EXECUTABLES, default=PACKAGE)
+    options = parser.parse_args()
+    package, wanted = options.package, options.prefix.resolve()
+    prefix = Path(get_package_prefix(package))
     if prefix.resolve() != wanted:
         return fail(f"the package was found in {prefix}, wanted {wanted}")
-    share = Path(get_package_share_directory(PACKAGE))
-    missing = [name for name in SHARED if not (share / name).is_file()]
+    share = Path(get_package_share_directory(package))
+    missing = [name for name in SHARED[package] if not (share / name).is_file()]
     if missing:
         return fail(f"missing in {share}: {', '.join(missing)}")
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
@@ -65,8 +72,8 @@ def main() -> int:
     rclpy.init(args=[], domain_id=domain)
     observer = Node("observer")
     try:
-        for name, (arguments, nodes) in EXECUTABLES.items():
-            problem = run(prefix / "lib" / PACKAGE / name, arguments, nodes, observer)
+        for name, (arguments, nodes) in EXECUTABLES[package].items():
+            problem = run(prefix / "lib" / package / name, arguments, nodes, observer)
             if problem:
                 return fail(f"{name}: {problem}")
             print(f"{name}: started and ended", flush=True)
