@@ -78,6 +78,28 @@ def simulator_with(ros):
 
 
 @pytest.fixture
+def strange_node(ros):
+    """Make a node in another participant, as another process has it."""
+    import rclpy
+    from rclpy.context import Context
+    from rclpy.node import Node
+
+    contexts, nodes = [], []
+
+    def make(name="teleop", namespace=""):
+        context = Context()
+        rclpy.init(context=context, domain_id=ros.domain)
+        contexts.append(context)
+        node = Node(name, context=context, namespace=namespace, enable_rosout=False, start_parameter_services=False)
+        nodes.append(node)
+        return node
+
+    yield make
+    for context in contexts:
+        context.try_shutdown()
+
+
+@pytest.fixture
 def roslib(ros, bridge):
     """A client of rosbridge, of a bridge with default parameters."""
     from tests.bridge.ros_client import RosClient

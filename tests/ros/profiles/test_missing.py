@@ -10,7 +10,7 @@ from sensor_msgs.msg import CameraInfo, Image
 from std_srvs.srv import Empty
 from test_msgs.action import Fibonacci
 
-from tests.ros.rclpy_ext.test_connections import beaten, strange_node  # noqa: F401
+from tests.ros.rclpy_ext.test_connections import beaten
 
 
 def subscriber(kind, topic):
@@ -44,7 +44,7 @@ def action_client(action):
         ("create3", client(Empty, "robot_power"), "cannot be switched off by ROS; end thymio-sim"),
     ],
 )
-def test_the_reason_is_given(ros, simulation, strange_node, like, ask, reason):  # noqa: F811
+def test_the_reason_is_given(ros, simulation, strange_node, like, ask, reason):
     simulator = simulation(like=like).simulator
     asked = ask(strange_node("student"))
     ros.until(lambda: any(reason in str(one) for one in beaten(simulator)))

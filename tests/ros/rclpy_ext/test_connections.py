@@ -6,14 +6,11 @@ import json
 import math
 
 import pytest
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import OccupancyGrid, Odometry
 from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import GetParameters
-from rclpy.context import Context
-from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import ColorRGBA, String
@@ -29,24 +26,6 @@ TWIST, STAMPED, TEXT, ODOMETRY = (
     "std_msgs/msg/String",
     "nav_msgs/msg/Odometry",
 )
-
-
-@pytest.fixture
-def strange_node(ros):
-    """Make a node in another participant, as another process has it."""
-    contexts, nodes = [], []
-
-    def make(name="teleop", namespace=""):
-        context = Context()
-        rclpy.init(context=context, domain_id=ros.domain)
-        contexts.append(context)
-        node = Node(name, context=context, namespace=namespace, enable_rosout=False, start_parameter_services=False)
-        nodes.append(node)
-        return node
-
-    yield make
-    for context in contexts:
-        context.try_shutdown()
 
 
 @pytest.fixture
