@@ -32,6 +32,11 @@ def test_a_trusted_proxy_reports_the_visitor() -> None:
     assert visitor.url == "https://school.example/thymio/"
 
 
+def test_the_name_of_a_page_can_be_quoted_whatever_its_bytes_are() -> None:
+    origin = b"http://local\x84ost".decode("utf-8", "surrogateescape")  # as aiohttp reads headers
+    assert NO_PROXIES.visitor(PUPIL, headers({"Origin": origin})).origin == "http://local\ufffdost"
+
+
 @pytest.mark.parametrize("proxies", [TrustedProxies(), PROXIES])
 def test_headers_of_others_do_not_count(proxies: TrustedProxies) -> None:
     visitor = proxies.visitor("10.0.0.2", headers(FORWARDED))

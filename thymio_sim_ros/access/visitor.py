@@ -100,7 +100,7 @@ class TrustedProxies:
             peer,
             (_matching(HOST, _last(hosts)) or "") if hosts else None,
             scheme,
-            origin=origins[-1] if origins else None,
+            origin=_readable(origins[-1]) if origins else None,
             is_forwarded=any(map(values, _OF_PROXIES)),
             is_from_link=_last(values("Sec-Fetch-Site")).lower() == "cross-site",
             query_token=_query_token(target),
@@ -171,6 +171,11 @@ def _bearer_token(authorizations: Iterable[str]) -> str | None:
         if scheme.lower() == "bearer":
             return token.strip()
     return None
+
+
+def _readable(text: str) -> str:
+    """A header's value with U+FFFD for bytes that are not UTF-8; aiohttp has lone surrogates, which no file takes."""
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
 def _last(values: Sequence[str]) -> str:
