@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import subprocess
 import sys
 
@@ -22,10 +23,11 @@ pytestmark = pytest.mark.process
 
 
 @pytest.fixture
-def suite(ros, tmp_path):
-    """A suite with one robot without a program."""
+def suite(ros, tmp_path, request):
+    """A suite with one robot without a program. A parameter of the test is its real-time factor."""
     ports = ("--port", str(free_port()), "--foxglove-port", str(free_port()))
-    process = Process(tmp_path, "thymio_sim_ros.cli.main", *ports, "--program", "none", "--headless")
+    pace = ("--ros-args", "-p", f"simulator:real_time_factor:={getattr(request, 'param', 1.0):.1f}")
+    process = Process(tmp_path, "thymio_sim_ros.cli.main", *ports, "--program", "none", "--headless", *pace)
     ros.until(lambda: ros.node.count_subscribers("/cmd_vel"), PATIENCE_S, what="the robot")
     yield process
     process.end()
@@ -54,9 +56,15 @@ def doctor(ros, *arguments, meanwhile=lambda: None):
     return process.returncode, output, errors
 
 
-def test_a_robot_that_nobody_drives_is_well(ros, suite):
-    code, output, errors = doctor(ros)
-    assert (code, errors) == (0, "")
+@pytest.mark.parametrize("suite", [1000.0], indirect=True)  # no computer is so fast
+def test_a_robot_that_nobody_drives_is_well_on_a_slow_computer(ros, suite):
+    def found():
+        code, output, errors = doctor(ros)
+        assert (code, errors) == (0, ""), output
+        return output if "slower than requested" in output else None
+
+    output = ros.until(found, PATIENCE_S, what="the pace")
+    assert re.search(r"simulator is slower than requested: real-time factor [0-9.]+, expected 1000; ", output)
     assert "Playground desk, robots: one without a name; ROS 2, ROS_DOMAIN_ID" in output
     assert "Nothing is wrong." in output
     assert "/cmd_vel has no publisher: the robot moves by its program and from the page only" in output

@@ -45,6 +45,8 @@ _STATE, _DIAGNOSTICS = "_state", "/diagnostics"
 _OF_EVERY_NODE = frozenset({"/rosout", "/parameter_events", "/clock", _DIAGNOSTICS})
 _MESSAGES, _CONNECTIONS = ": messages", ": connections"
 """Ends of names of statuses whose values are sentences."""
+_PACE = ": pace"
+"""End of names of statuses about a simulation that is slower than requested."""
 _CLAMPED = " clamped: "
 _MAX_VALUES = 6
 """Largest number of values of a message that are shown."""
@@ -126,7 +128,7 @@ class _Doctor:
         for state in self._states.values():
             self._describe(state)
         self._found.faults = list(dict.fromkeys([*self._found.faults, *self._other_faults()]))
-        self._found.notes = list(dict.fromkeys([*self._found.notes, *self._clamped(), *self._unused()]))
+        self._found.notes = list(dict.fromkeys([*self._found.notes, *self._slow(), *self._clamped(), *self._unused()]))
         return self._found
 
     def _spin(self, seconds: float, is_done: Callable[[], bool]) -> None:
@@ -209,15 +211,25 @@ class _Doctor:
         found.faults += state["faults"]
 
     def _other_faults(self) -> Iterable[str]:
-        """Statuses with a fault that the state does not have: pace, clock, programs, messages to the runtime."""
+        """Statuses with a fault that the state does not have: clock, programs, messages to the runtime."""
         in_state = {f"{topic.strip('/').removesuffix(f'/{_STATE}')}{_MESSAGES}" for topic in self._states}
         for name, status in self._statuses.items():
-            if status.level == DiagnosticStatus.OK or name in in_state:
+            if status.level == DiagnosticStatus.OK or name in in_state or name.endswith(_PACE):
                 continue
             if name.endswith((_MESSAGES, _CONNECTIONS)):
                 yield from (pair.value for pair in status.values if " " in pair.value and _CLAMPED not in pair.value)
             else:
                 yield f"{name}: {status.message}"
+
+    def _slow(self) -> Iterable[str]:
+        """Simulations for which the computer has too little time: robot and nodes are well, only later."""
+        for name, status in self._statuses.items():
+            if name.endswith(_PACE) and status.level != DiagnosticStatus.OK:
+                factors = {pair.key.rpartition(" ")[2]: pair.value for pair in status.values}
+                yield (
+                    f"{name.removesuffix(_PACE)} is {status.message}: real-time factor {factors['achieved']},"
+                    f" expected {factors['wanted']}; this computer is busy"
+                )
 
     def _clamped(self) -> Iterable[str]:
         values = (pair.value for status in self._statuses.values() for pair in status.values)
