@@ -120,6 +120,13 @@ def test_a_folder_gets_the_stubs_of_all_packages(tmp_path: Path) -> None:
     assert expected | {"test_msgs/message_fixtures.pyi"} < found
 
 
+def test_a_stub_of_rclpy_has_the_names_that_its_module_has_from_others() -> None:
+    lines = stubs()["rclpy/node.pyi"].splitlines()
+    place = "thymio_sim_ros.portable_ros.rclpy"
+    assert {f"from {place}.node import *", f"from {place}.publisher import Publisher as Publisher"} < set(lines)
+    assert "from rcl_interfaces.msg import ParameterDescriptor as ParameterDescriptor" in lines
+
+
 @pytest.mark.process
 def test_mypy_finds_wrong_messages(tmp_path: Path) -> None:
     pytest.importorskip("mypy", reason="mypy is installed by `make lint`")

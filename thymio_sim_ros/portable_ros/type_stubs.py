@@ -30,6 +30,7 @@ from thymio_sim_ros.portable_ros.messages.interface_files import (
     services,
 )
 from thymio_sim_ros.portable_ros.messages.primitives import PRIMITIVES
+from thymio_sim_ros.portable_ros.rclpy_parts.borrowed_names import sources as sources_of
 
 __all__ = ["stubs", "write"]
 
@@ -67,7 +68,9 @@ def stubs(own: Sequence[str] = ()) -> dict[str, str]:
     for source in sources:
         path = source.relative_to(_ROOM).with_suffix(".pyi")
         module = ".".join((__package__, *path.with_suffix("").parts)).removesuffix(".__init__")
-        found[path.as_posix()] = f"from {module} import *\n"
+        borrowed = sources_of(module.removeprefix(f"{__package__}.")).items()
+        lines = [f"from {module} import *", *(f"from {place} import {name} as {name}" for name, place in borrowed)]
+        found[path.as_posix()] = "".join(f"{line}\n" for line in lines)
     for package in (*PACKAGES, *own):
         found[f"{package}/__init__.pyi"] = ""
         for form in FORMS:

@@ -1,7 +1,8 @@
 """Names that modules of rclpy have from other modules, and that programs import from there.
 
 `from rclpy.node import Node, Publisher` works with rclpy, since its module `node` imports the class `Publisher`, and
-editors write such imports. The import hook serves these names; the modules of the room need them not.
+editors write such imports. The import hook serves these names, and stubs have them; the modules of the room do not need
+them.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import importlib
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-__all__ = ["BORROWED", "lookup"]
+__all__ = ["BORROWED", "lookup", "sources"]
 
 MsgType = TypeVar("MsgType")
 SrvType = TypeVar("SrvType")
@@ -140,15 +141,22 @@ BORROWED: Mapping[str, Mapping[str, str]] = {
 _ROOM = __package__.rpartition(".")[0]
 
 
+def sources(module: str) -> dict[str, str]:
+    """The modules of the names that a module of rclpy has from others, by these names."""
+    return {
+        name: f"{_ROOM}.{place}" if place.startswith("rclpy") else place
+        for place, names in BORROWED.get(module, {}).items()
+        for name in names.split()
+    }
+
+
 def lookup(module: str, before: Callable[[str], Any] | None) -> Callable[[str], Any]:
     """The `__getattr__` of a module of rclpy, which may have had one before."""
-    places = {name: place for place, names in BORROWED.get(module, {}).items() for name in names.split()}
+    places = sources(module)
 
     def get(name: str) -> Any:
-        place = places.get(name)
-        if place is not None:
-            is_own = place.startswith("rclpy")
-            return getattr(importlib.import_module(f"{_ROOM}.{place}" if is_own else place), name)
+        if name in places:
+            return getattr(importlib.import_module(places[name]), name)
         if before is not None:
             return before(name)
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
