@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from tests.patience import Deadline
@@ -12,9 +14,16 @@ from thymio_sim_ros.portable_ros.rclpy.duration import Duration, Infinite
 from thymio_sim_ros.portable_ros.rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from thymio_sim_ros.portable_ros.rclpy.executors import SingleThreadedExecutor
 from thymio_sim_ros.portable_ros.rclpy.node import Node
-from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, QoSProfile
+from thymio_sim_ros.portable_ros.rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
 
 String, Int32 = message_type("std_msgs/msg/String"), message_type("std_msgs/msg/Int32")
+
+
+def _spin_until(executor: SingleThreadedExecutor, condition: Callable[[], bool]) -> None:
+    deadline = Deadline()
+    while not condition() and not deadline.is_over:
+        executor.spin_once(timeout_sec=0.1)
+    assert condition()
 
 
 def test_endpoints_of_another_type_are_reported_to_both_and_logged_by_default(
@@ -65,6 +74,51 @@ def test_after_a_shutdown_the_number_of_matches_is_an_error() -> None:
     with pytest.raises(RCLError, match="failed to get subscription count: publisher's context is invalid"):
         publisher.get_subscription_count()
     node.destroy_node()
+
+
+def test_a_publisher_that_asserts_its_liveliness_is_counted_and_told_that_it_has_lost_it(node: Node) -> None:
+    """The events of Fast DDS in one process."""
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    inner: list[tuple[int, int, int, int]] = []
+    lost: list[int] = []
+    received: list[str] = []
+    profile = QoSProfile(
+        depth=1, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(seconds=0.02)
+    )
+    subscription = node.create_subscription(
+        String,
+        "alive",
+        lambda message: received.append(message.data),
+        profile,
+        event_callbacks=SubscriptionEventCallbacks(
+            liveliness=lambda info: inner.append(
+                (info.alive_count, info.not_alive_count, info.alive_count_change, info.not_alive_count_change)
+            )
+        ),
+    )
+    publisher = node.create_publisher(
+        String,
+        "alive",
+        profile,
+        event_callbacks=PublisherEventCallbacks(liveliness=lambda info: lost.append(info.total_count)),
+    )
+    executor.spin_once(timeout_sec=0.1)
+    assert not inner, "a publisher is alive from its first assertion on"
+    publisher.assert_liveliness()
+    _spin_until(executor, lambda: lost == [1] and len(inner) == 2)
+    assert inner == [(1, 0, 1, 0), (0, 1, -1, 1)]
+    publisher.publish(String(data="one"))
+    publisher.publish(String(data="two"))
+    _spin_until(executor, lambda: lost == [1, 2] and len(inner) == 4)
+    assert inner[2:] == [(1, 0, 1, -1), (0, 1, -1, 1)]
+    assert not list(node.timers)
+    node.destroy_publisher(publisher)
+    _spin_until(executor, lambda: len(inner) == 5)
+    assert inner[4] == (0, 0, 0, -1)
+    assert not list(node.all_timers)
+    assert received
+    node.destroy_subscription(subscription)
 
 
 def test_both_ends_of_a_topic_report_messages_that_miss_the_deadline(node: Node) -> None:

@@ -1,16 +1,18 @@
-"""Events of publishers and subscriptions: matches, and endpoints that do not fit."""
+"""Events of publishers and subscriptions: matches, endpoints that do not fit, missed deadlines, liveliness."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any, Protocol
 
+from thymio_sim_ros.portable_ros.graph.liveliness import Lease
 from thymio_sim_ros.portable_ros.rclpy.event_handler import (
     CountInfo,
     EventHandler,
     IncompatibleQoSInfo,
     IncompatibleTypeInfo,
     MatchedInfo,
+    QoSLivelinessChangedInfo,
 )
 from thymio_sim_ros.portable_ros.rclpy.qos import QoSPolicyKind
 
@@ -34,8 +36,11 @@ class EndpointEvents:
         """`handlers`: by the names of their callbacks, such as `matched`."""
         self._handlers = handlers
         self._total = self._current = self._misfits = self._other_types = self._missed = 0
+        self._alive = self._not_alive = self._lost = 0
         self.deadline: DeadlineTimer | None = None
         """Runs out if no message comes in time; None if nothing asks for that."""
+        self.lease: Lease | None = None
+        """The liveliness of a publisher that asserts it itself, None without it."""
 
     @property
     def handlers(self) -> list[EventHandler]:
@@ -67,6 +72,19 @@ class EndpointEvents:
         if self.deadline is not None:
             self.deadline.reset()
 
+    def report_liveliness(self, alive: int, not_alive: int) -> None:
+        """Report changes of the numbers of publishers that are alive and that are not, to a subscription."""
+        self._alive += alive
+        self._not_alive += not_alive
+        self._put("liveliness", QoSLivelinessChangedInfo(self._alive, self._not_alive, alive, not_alive))
+
+    def report_lost(self) -> None:
+        """Report to a publisher that it has not asserted its liveliness in time."""
+        if self.lease is not None:
+            self.lease.end()
+        self._lost += 1
+        self._put("liveliness", CountInfo(self._lost, 1))
+
     def report_missed(self) -> None:
         """Report a message that did not come within the deadline."""
         self._missed += 1
@@ -77,12 +95,20 @@ class EndpointEvents:
         """Whether there is a handler for missed deadlines."""
         return "deadline" in self._handlers
 
+    @property
+    def timers(self) -> list[DeadlineTimer]:
+        """The timers of deadline and lease, if there are such."""
+        found = (self.deadline, None if self.lease is None else self.lease.timer)
+        return [one for one in found if one is not None]
+
     def destroy(self) -> None:
-        """Destroy the handlers and the timer of the deadline."""
+        """Destroy the handlers and the timers of deadline and lease."""
         for handler in self._handlers.values():
             handler.destroy()
         if self.deadline is not None:
             self.deadline.destroy()
+        if self.lease is not None:
+            self.lease.destroy()
 
     def _put(self, name: str, info: Any) -> None:
         if name in self._handlers:

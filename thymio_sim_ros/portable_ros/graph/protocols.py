@@ -28,6 +28,9 @@ class EndEvents(Protocol):
     def report_other_type(self) -> None:
         """Report an endpoint that has another type."""
 
+    def report_liveliness(self, alive: int, not_alive: int) -> None:
+        """Report changes of the numbers of publishers that are alive and that are not, to a subscription."""
+
 
 class SubscriptionEnd(Protocol):
     """A subscription."""

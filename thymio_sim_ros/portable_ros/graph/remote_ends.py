@@ -54,6 +54,9 @@ class _NoEvents:
     def report_other_type(self) -> None:
         """Ignore it."""
 
+    def report_liveliness(self, alive: int, not_alive: int) -> None:
+        """Ignore it."""
+
 
 @dataclass(eq=False)
 class RemoteEnd:

@@ -1,7 +1,7 @@
 """Callbacks for events of publishers and subscriptions.
 
-In one process no message is lost, late or without its publisher, so that of all events only matches and endpoints that
-do not fit occur; callbacks for others are accepted and never called.
+In one process no message is lost: callbacks for that are accepted and never called. Publishers with automatic
+liveliness live as long as their process.
 """
 
 from __future__ import annotations

@@ -90,7 +90,10 @@ class Publisher(Generic[MsgT]):
             return len(self.matched)
 
     def assert_liveliness(self) -> None:
-        """Need nothing: a publisher lives as long as its process."""
+        """Be alive for another lease, with the policy MANUAL_BY_TOPIC. Others live as long as their process."""
+        with self._handle:
+            if self.events.lease is not None:
+                self.events.lease.begin([one.events for one in self.matched])
 
     def wait_for_all_acked(self, timeout: Duration = Duration(nanoseconds=-1)) -> bool:  # noqa: B008  # as rclpy's
         """Return at once: messages arrive while they are published. Raises RCLError after a shutdown."""
@@ -122,6 +125,8 @@ class Publisher(Generic[MsgT]):
         """Send no more messages to a subscription."""
         with self._lock:
             self.matched = tuple(one for one in self.matched if one is not subscription)
+            if self.events.lease is not None:
+                self.events.lease.forget(subscription.events)
         self.events.report_match(-1)
 
     @property
@@ -142,6 +147,8 @@ class Publisher(Generic[MsgT]):
         with self._lock:
             self._count += 1
             self.events.note_message()
+            if self.events.lease is not None:
+                self.assert_liveliness()
             if data is None:
                 return
             sample = Sample(data, time_base.system_ns(), self._count)

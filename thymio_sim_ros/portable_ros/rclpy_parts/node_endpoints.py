@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any, Literal, TypeVar, overload
 
 from thymio_sim_ros.portable_ros.graph.endpoint_events import EndpointEvents
+from thymio_sim_ros.portable_ros.graph.liveliness import Lease
 from thymio_sim_ros.portable_ros.messages.message_class import Message, MsgT, SrvRequestT, SrvResponseT
 from thymio_sim_ros.portable_ros.messages.message_class import Service as ServiceType
 from thymio_sim_ros.portable_ros.rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
@@ -21,7 +22,13 @@ from thymio_sim_ros.portable_ros.rclpy.event_handler import (
 from thymio_sim_ros.portable_ros.rclpy.guard_condition import GuardCondition
 from thymio_sim_ros.portable_ros.rclpy.logging import get_logger
 from thymio_sim_ros.portable_ros.rclpy.publisher import Publisher
-from thymio_sim_ros.portable_ros.rclpy.qos import DeadlineBestAvailable, QoSProfile, qos_profile_services_default
+from thymio_sim_ros.portable_ros.rclpy.qos import (
+    DeadlineBestAvailable,
+    LivelinessLeaseDurationeBestAvailable,
+    LivelinessPolicy,
+    QoSProfile,
+    qos_profile_services_default,
+)
 from thymio_sim_ros.portable_ros.rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
 from thymio_sim_ros.portable_ros.rclpy.service import Service
 from thymio_sim_ros.portable_ros.rclpy.subscription import MessageInfo, Subscription
@@ -60,6 +67,7 @@ class NodeEndpoints(NodeEntities):
         group = callback_group or self._default_callback_group
         events = self._events(event_callbacks or PublisherEventCallbacks(), group, topic)
         self._watch_deadline(events, profile, group)
+        self._watch_liveliness(events, profile, group)
         made = publisher_class(self._context, msg_type, topic, full, profile, events, self._logger.name)
         self._entities[Publisher].append(made)
         made.handle.on_release(lambda: self._graph.remove_publisher(made))
@@ -263,10 +271,22 @@ class NodeEndpoints(NodeEntities):
         """Have missed deadlines reported, if a profile has a deadline and a callback asks for them."""
         deadline = profile.deadline
         if events.asks_for_deadlines and Duration() < deadline < DeadlineBestAvailable:
-            clock = Clock(clock_type=ClockType.STEADY_TIME)
-            timer = Timer(events.report_missed, group, deadline.nanoseconds, clock, autostart=False)
-            timer.is_part = True
-            events.watch(self._owned(timer))
+            events.watch(self._hidden_timer(events.report_missed, deadline, group))
+
+    def _watch_liveliness(self, events: EndpointEvents, profile: QoSProfile, group: CallbackGroup) -> None:
+        """Have the end of a publisher's liveliness reported, if it asserts that itself."""
+        duration = profile.liveliness_lease_duration
+        is_manual = profile.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
+        if is_manual and Duration() < duration < LivelinessLeaseDurationeBestAvailable:
+            events.lease = Lease()
+            events.lease.timer = self._hidden_timer(events.report_lost, duration, group)
+
+    def _hidden_timer(self, callback: Callable[[], None], period: Duration, group: CallbackGroup) -> Timer:
+        """A timer that runs after its `reset`, on steady time, and is not listed."""
+        clock = Clock(clock_type=ClockType.STEADY_TIME)
+        timer = self._owned(Timer(callback, group, period.nanoseconds, clock, autostart=False))
+        timer.is_part = True
+        return timer
 
 
 def _profile(qos_or_depth: QoSProfile | int) -> QoSProfile:

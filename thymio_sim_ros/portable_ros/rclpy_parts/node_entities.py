@@ -134,9 +134,8 @@ class NodeEntities(NodeParameters):
 
     def _remove_with_events(self, end: Publisher[Any] | Subscription) -> bool:
         is_own = self._remove(end)
-        for part in (*end.event_handlers, end.events.deadline):
-            if part is not None:
-                self._remove(part)
+        for part in (*end.event_handlers, *end.events.timers):
+            self._remove(part)
         return is_own
 
     def _remove(self, end: Any) -> bool:
