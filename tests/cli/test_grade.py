@@ -10,15 +10,12 @@ from pathlib import Path
 import pytest
 
 from tests.batch_runs.loop import Loop
-from thymio_sim_ros.batch_runs.failure import attempt
 from thymio_sim_ros.cli import grade as command
 from thymio_sim_ros.cli.errors import USAGE_ERROR
 from thymio_sim_ros.cli.main import main
 from thymio_sim_ros.grading import grader
 from thymio_sim_ros.grading.errors import DestroyedError, GradingError
 from thymio_sim_ros.grading.sandbox.job import Job, Outcome, Report
-
-engine = pytest.importorskip("thymio_sim_ros.batch_runs.engine", exc_type=ImportError)
 
 GRADE = ["grade", "class", "--assignment", "test_it.py"]
 
@@ -41,7 +38,7 @@ class Sandbox:
 def sandbox(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Sandbox:
     found = Sandbox()
     monkeypatch.setattr(grader, "run_job", found.run_job)
-    monkeypatch.setattr(grader, "_why_unavailable", lambda level: "")
+    monkeypatch.setattr(grader, "why_unavailable", lambda level: "")
     monkeypatch.setattr(command, "best_level", lambda: "namespaces")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "test_it.py").write_text("def test_a(): ...")
@@ -53,7 +50,7 @@ def sandbox(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Sandbox:
 @pytest.fixture
 def loop(monkeypatch: pytest.MonkeyPatch, sandbox: Sandbox) -> Loop:
     found = Loop()
-    monkeypatch.setattr(engine, "run_all", found.run_all)
+    monkeypatch.setattr(grader, "run_in_threads", found.run_all)
     return found
 
 
@@ -131,7 +128,7 @@ def test_a_damaged_report_is_made_again(loop: Loop, sandbox: Sandbox) -> None:
 
 
 def test_a_submission_that_no_machine_could_grade_is_said_and_repeated(
-    loop: Loop, sandbox: Sandbox, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    sandbox: Sandbox, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     run_job = sandbox.run_job
 
@@ -142,10 +139,6 @@ def test_a_submission_that_no_machine_could_grade_is_said_and_repeated(
 
     monkeypatch.setattr(grader, "run_job", full)
 
-    def run_all(function, tasks, **_):  # type: ignore[no-untyped-def]
-        yield [(index, attempt(function, task)) for index, task in enumerate(tasks)]
-
-    monkeypatch.setattr(engine, "run_all", run_all)
     assert main(GRADE) == command.FAILED
     captured = capsys.readouterr()
     assert "0/2  Ben: could not be graded: OSError: [Errno 28] No space left on device" in captured.out
@@ -179,11 +172,7 @@ def test_a_fault_of_the_machine_is_no_fault_of_the_pupil(
             return fault
         raise fault
 
-    def run_all(function, tasks, **_):  # type: ignore[no-untyped-def]
-        yield [(index, attempt(function, task)) for index, task in enumerate(tasks)]
-
     monkeypatch.setattr(grader, "run_job", faulty)
-    monkeypatch.setattr(engine, "run_all", run_all)
     assert main(GRADE) == code
     page = next(Path("grades/pupils").glob("Ben-*/index.html")).read_text()
     assert verdict in page
@@ -192,7 +181,7 @@ def test_a_fault_of_the_machine_is_no_fault_of_the_pupil(
 
 
 def test_a_worker_without_the_isolation_grades_nobody(sandbox: Sandbox, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(grader, "_why_unavailable", lambda level: "unshare: not permitted")
+    monkeypatch.setattr(grader, "why_unavailable", lambda level: "unshare: not permitted")
     with pytest.raises(GradingError, match=r"isolation namespaces is not available on .*: unshare: not permitted"):
         grader.run_submission(None, assignment=None, tests=(), level="namespaces")  # type: ignore[arg-type]
     assert sandbox.runs == []

@@ -14,8 +14,6 @@ from thymio_sim_ros.cli import main
 
 __all__ = ["level"]
 
-pytest.importorskip("thymio_sim_ros.batch_runs.engine", exc_type=ImportError)
-
 pytestmark = [
     pytest.mark.process,
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="sandboxes need Linux"),

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import re
+import signal
 import socket
 import sys
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
 from pathlib import Path
 
+import psutil
 import pytest
 
 from tests.grading.example_class import HARMLESS, PUPILS, moodle_zip, write_assignment
+from tests.patience import until
+from tests.processes import SUITE, Process
 from thymio_sim_ros.cli import grade as grade_command
 from thymio_sim_ros.cli import main
 from thymio_sim_ros.cli.errors import USAGE_ERROR
@@ -22,8 +27,6 @@ from thymio_sim_ros.grading import grader
 from thymio_sim_ros.grading.errors import GradingError
 from thymio_sim_ros.grading.sandbox.job import Report
 from thymio_sim_ros.grading.sandbox.levels import best_level
-
-engine = pytest.importorskip("thymio_sim_ros.batch_runs.engine", exc_type=ImportError)
 
 pytestmark = [
     pytest.mark.process,
@@ -107,6 +110,7 @@ def test_the_class_of_thirty_gets_its_marks_and_harms_nothing(level: str, small:
 
 @pytest.mark.slow
 def test_a_cluster_with_an_address_gives_the_same_marks(small: Path, tmp_path: Path) -> None:
+    engine = pytest.importorskip("thymio_sim_ros.batch_runs.engine", exc_type=ImportError)
     with engine._quiet(), engine._local(2, "") as client:
         output = grade(tmp_path, ("Good", "Straight"), "--scheduler", client.scheduler.address)
     one, other = rows(small), rows(output)
@@ -130,6 +134,23 @@ def test_the_table_is_written_while_the_class_is_graded(
     words = ["grade", class_, "--assignment", assignment, "-o", output]
     assert main.main(list(map(str, words))) == 0
     assert list(rows(output)) == ["Good", "Stands"]
+
+
+def test_ctrl_c_in_a_terminal_is_no_verdict(level: str, tmp_path: Path) -> None:
+    """It reaches all processes of the terminal, and must not look as if the submission had ended its sandbox."""
+    class_ = moodle_zip(tmp_path / "class.zip", ("Sleeps",), host_folder=tmp_path, host_port=1)
+    words = ["grade", class_, "--assignment", write_assignment(tmp_path / "assignment"), "-o", tmp_path / "grades"]
+    command = Process(tmp_path, SUITE, *map(str, words))
+
+    def sandboxes() -> list[psutil.Process]:
+        children = psutil.Process(command.pid).children()
+        return children if "1 submissions" in command.output else []
+
+    sandbox = until(sandboxes)
+    os.killpg(command.pid, signal.SIGINT)
+    until(lambda: not command.is_running and not any(one.is_running() for one in sandbox))
+    assert "stopped; the same command continues the grading" in command.output
+    assert rows(tmp_path / "grades") == {}
 
 
 def test_a_failure_has_a_page_with_a_picture_and_a_run_log(small: Path) -> None:

@@ -62,7 +62,8 @@ example:
 def run(argv: Sequence[str]) -> int:
     """Grade a class; return the exit code. Raises UsageError for input that cannot be used."""
     options = _parser().parse_args(argv)
-    check_dask("grade")
+    if options.scheduler or options.dashboard:
+        check_dask("grade")
     if options.ros:
         check_ros()
     try:

@@ -1,4 +1,4 @@
-"""Grades the submissions of a class in sandboxes, on all cores of this machine or on a Dask cluster."""
+"""Grades the submissions of a class in sandboxes, on threads that wait for them or on a Dask cluster."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import socket
 from collections.abc import Generator, Sequence
 from contextlib import closing
 from fractions import Fraction
-from functools import cache, partial
+from functools import partial
 
 from thymio_sim_ros.batch_runs.failure import Failure
 from thymio_sim_ros.batch_runs.threads import run_in_threads
@@ -60,13 +60,13 @@ def run_submissions(
     """Run the tests on submissions, each in a sandbox of its own; yield the reports as they come.
 
     Each comes once, with the index of its submission, in any order; an empty list comes twice a second. A `Failure` is
-    no verdict: the machine could not grade. `workers`, `scheduler`, `dashboard`: see `batch_runs.engine.run_all`.
-    Raises EngineError.
+    no verdict: the machine could not grade. `workers`: sandboxes at the same time on this machine (None: one per core).
+    `scheduler`, `dashboard`: see `batch_runs.engine.run_all`; without both there is no cluster. Raises EngineError.
     """
     names = tuple(test.name for test in tests)
     function = partial(run_submission, assignment=assignment, tests=names, level=level)
-    if level == "process" and not scheduler:  # Dask's processes would only wait for those of the submissions
-        with closing(run_in_threads(function, submissions, workers)) as outcomes:
+    if not scheduler and not dashboard:  # the processes of a cluster would only wait for those of the submissions
+        with closing(run_in_threads(function, submissions, workers=workers)) as outcomes:
             yield from outcomes
         return
     from thymio_sim_ros.batch_runs.engine import run_all
@@ -81,7 +81,7 @@ def run_submission(submission: Submission, *, assignment: Assignment, tests: tup
 
     Raises GradingError if this machine does not have the level of isolation, or the sandbox fails by itself.
     """
-    if reason := _why_unavailable(level):
+    if reason := why_unavailable(level):
         raise GradingError(f"isolation {level} is not available on {socket.gethostname()}: {reason}")
     outcomes: dict[str, Outcome] = {}
     for part in assignment.parts():
@@ -105,9 +105,6 @@ def run_submission(submission: Submission, *, assignment: Assignment, tests: tup
             return Report({}, remark=": ".join([report.remark, *notes]))
         outcomes |= report.outcomes
     return Report(outcomes)
-
-
-_why_unavailable = cache(why_unavailable)
 
 
 def graded(

@@ -141,7 +141,7 @@ class GradingPlugin:
     @pytest.hookimpl(trylast=True)
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """Report the tests; continue when the supervisor has replaced their sources by the submission."""
-        if not self._broken and (reason := _import_for(session.items)):
+        if not self._broken and (reason := _import_for(session.items, is_run=self._selected is not None)):
             self._broken.append(reason)
         if self._broken:
             self._send("broken", message="\n".join(self._broken)[-_LONGEST:])
@@ -238,9 +238,13 @@ def _keep_sources(folder: Path) -> None:
         linecache.cache[str(path)] = (len(lines), None, lines, str(path))  # without a time, it is never checked again
 
 
-def _import_for(items: Sequence[pytest.Item]) -> str:
-    """Import what the fixtures of tests import, before the submission is there; return why that is not possible."""
-    import thymio_sim_ros.testing
+def _import_for(items: Sequence[pytest.Item], *, is_run: bool) -> str:
+    """Import what the fixtures of tests import, before the submission is there; return why that is not possible.
+
+    `is_run`: whether the tests are run afterwards, and not only collected.
+    """
+    if is_run:
+        import thymio_sim_ros.testing
 
     used = {name for item in items for name in getattr(item, "fixturenames", ())}
     if used & {"ros", "simulation", "runtime"} and importlib.util.find_spec("rclpy") is not None:

@@ -57,6 +57,12 @@ def why_unavailable(level: str) -> str:
         and (reason := _why_closed(needed_paths(), user=UNPRIVILEGED_ID))
     ):
         return reason
+    return _probed(level)
+
+
+@cache
+def _probed(level: str) -> str:
+    """Why a level cannot run a test here; empty if it can. Tried once in a process."""
     probe = b"def test_nothing(): pass\n"
     job = Job(level, ("test_probe.py",), {"test_probe.py": probe}, {}, None, Limits())
     try:
@@ -90,6 +96,8 @@ def run_job(job: Job) -> Report:
     environment = {**os.environ, "PYTHONPATH": python_path(), "PYTHONUTF8": "1"}
     with subprocess.Popen(
         [sys.executable, "-P", "-m", _LAUNCHER],
+        # Ctrl-C is for the grader, with which the kernel ends a sandbox; a process without a sandbox has to end itself.
+        start_new_session=job.level != "process",
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
