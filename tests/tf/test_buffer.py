@@ -87,6 +87,29 @@ def test_messages_in_another_frame():
         Buffer().transform(type("Said", (String,), {"header": point.header})(), "map")
 
 
+def test_what_is_no_registered_message_is_an_error_of_its_type() -> None:
+    for other in (Pose(), 5):
+        with pytest.raises(TypeException, match=f"found {type(other).__name__}, expected one of PointStamped"):
+            Buffer().transform(other, "map")
+
+
+def test_transforms_that_are_not_valid_or_repeated_are_left_out_with_a_warning(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    buffer, transform = Buffer(), TransformStamped(child_frame_id="base")
+    transform.header.frame_id, transform.header.stamp.sec = "map", 1
+    transform.transform.rotation.w = 1.0
+    buffer.set_transform(transform, "me")
+    transform.transform.translation.x = 5.0
+    buffer.set_transform(transform, "me")
+    assert buffer.lookup_transform("map", "base", Time()).transform.translation.x == 0.0
+    assert "ignored a transform of me: a transform of base at time 1.000000 exists already" in capfd.readouterr().err
+    transform.child_frame_id = "map"
+    buffer.set_transform_static(transform, "me")
+    assert "the same frame as frame_id" in capfd.readouterr().err
+    assert buffer.all_frames_as_string() == "Frame base exists with parent map.\n"
+
+
 def test_can_transform_with_the_reason():
     buffer = Buffer()
     buffer.set_transform(stamped("map", "base"), "test")

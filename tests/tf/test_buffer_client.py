@@ -123,7 +123,9 @@ def test_errors_of_the_server_are_exceptions(graph, client):
     assert client.action_client.wait_for_server(PATIENCE_S)
     server.buffer.set_transform(stamped("map", "odom", 1.0, 2.0), "test")
     server.buffer.set_transform(stamped("other", "base", 1.0, 2.0), "test")
-    with pytest.raises(LookupException, match='"nothing" passed as target_frame does not exist'):
+    with pytest.raises(
+        LookupException, match='"nothing" passed to lookupTransform argument target_frame does not exist'
+    ):
         client.lookup_transform("nothing", "odom", Time())
     with pytest.raises(ConnectivityException):
         client.lookup_transform("map", "base", Time())

@@ -154,9 +154,12 @@ def test_unconnected_frames():
 
 def test_unknown_frames_are_a_lookup_error():
     core = filled(("map", "base", 1.0, turn(0.0)))
-    with pytest.raises(LookupException, match='"odom" passed as source_frame does not exist; known frames: base'):
+    with pytest.raises(
+        LookupException,
+        match='"odom" passed to lookupTransform argument source_frame does not exist; known frames: base',
+    ):
         core.lookup("map", "odom")
-    with pytest.raises(LookupException, match='"odom" passed as target_frame does not exist'):
+    with pytest.raises(LookupException, match='"odom" passed to lookupTransform argument target_frame does not exist'):
         core.lookup("odom", "map")
 
 

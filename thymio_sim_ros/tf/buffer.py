@@ -10,6 +10,7 @@ from builtin_interfaces.msg import Time as TimeMessage
 from geometry_msgs.msg import TransformStamped
 from rclpy.clock import Clock
 from rclpy.duration import Duration
+from rclpy.logging import get_logger
 from rclpy.node import Node
 from rclpy.task import Future
 from rclpy.time import Time
@@ -47,12 +48,12 @@ class Buffer(BufferInterface):
             self.srv = node.create_service(FrameGraph, "tf2_frames", self._on_frames)
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
-        """Store a transform. Raises TransformException if it is invalid or too old."""
-        self._store([placed_of(transform)], authority, is_static=False)
+        """Store a transform; one that is invalid, too old or repeated is left out with a warning, as by tf2."""
+        self._store_or_warn(transform, authority, is_static=False)
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
-        """Store a transform that is valid at any time. Raises TransformException if it is invalid."""
-        self._store([placed_of(transform)], authority, is_static=True)
+        """Store a transform that is valid at any time; an invalid one is left out with a warning, as by tf2."""
+        self._store_or_warn(transform, authority, is_static=True)
 
     def clear(self) -> None:
         """Drop all transforms except static ones."""
@@ -237,6 +238,12 @@ class Buffer(BufferInterface):
     def _on_frames(self, _request: object, response: Any) -> Any:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
+
+    def _store_or_warn(self, transform: TransformStamped, authority: str, *, is_static: bool) -> None:
+        try:
+            self._store([placed_of(transform)], authority, is_static=is_static)
+        except TransformException as error:
+            get_logger("tf2").warning(f"ignored a transform of {authority}: {error}")
 
     def _store(self, transforms: Iterable[StampedTransform], authority: str, *, is_static: bool) -> None:
         """Store all valid transforms, complete the futures that waited for them, and then raise the first error."""

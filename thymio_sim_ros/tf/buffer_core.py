@@ -255,10 +255,12 @@ class BufferCore:
         return "".join(parts) or "[]"
 
     def _check_known(self, name: str, role: str) -> None:
-        _check_name(name, f"passed as {role}")
+        _check_name(name, role)
         if name not in self._frames:
             known = ", ".join(sorted(self._frames)) or "none"
-            raise LookupException(f'"{name}" passed as {role} does not exist; known frames: {known}')
+            raise LookupException(
+                f'"{name}" passed to lookupTransform argument {role} does not exist; known frames: {known}'
+            )
 
     def _unconnected(self, target: str, source: str) -> ConnectivityException:
         return ConnectivityException(
@@ -361,11 +363,14 @@ def _checked(placed: StampedTransform) -> StampedTransform:
     return replace(placed, frame=frame, child=child)
 
 
-def _check_name(name: str, what: str) -> None:
+def _check_name(name: str, role: str) -> None:
+    if not isinstance(name, str):
+        raise TypeError(f"{role}: found {name!r}, expected a str")
+    passed = f"passed to lookupTransform argument {role} in tf2 frame_ids cannot"
     if not name:
-        raise InvalidArgumentException(f"an empty name {what}: frame ids in tf2 cannot be empty")
+        raise InvalidArgumentException(f"Invalid argument {passed} be empty")
     if name.startswith("/"):
-        raise InvalidArgumentException(f"\"{name}\" {what}: frame ids in tf2 cannot start with a '/'")
+        raise InvalidArgumentException(f"Invalid argument \"{name}\" {passed} start with a '/'")
 
 
 def _difference(one: Vector, other: Vector) -> Vector:

@@ -117,7 +117,8 @@ class BufferInterface:
 
         Raises TypeException for a type without a function, and the exceptions of `lookup_transform`.
         """
-        header, act = object_stamped.header, self.registration.get(type(object_stamped))
+        act = self.registration.get(type(object_stamped))
+        header = object_stamped.header
         transformed = act(object_stamped, self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout))
         return transformed if new_type is None else convert(transformed, new_type)
 
@@ -131,7 +132,8 @@ class BufferInterface:
         new_type: type | None = None,
     ) -> Any:
         """Transform a message to another frame at another time; see `transform` and `lookup_transform_full`."""
-        header, act = object_stamped.header, self.registration.get(type(object_stamped))
+        act = self.registration.get(type(object_stamped))
+        header = object_stamped.header
         known = (target_frame, target_time, header.frame_id, header.stamp, fixed_frame, timeout)
         transformed = act(object_stamped, self.lookup_transform_full(*known))
         return transformed if new_type is None else convert(transformed, new_type)
