@@ -6,13 +6,15 @@ import contextlib
 import http.client
 import json
 import os
+import queue
 import signal
 import socket
 import sys
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
@@ -21,6 +23,8 @@ from tests.page_nodes.page import Page
 from tests.patience import PATIENCE_S, until
 from tests.processes import SUITE, Process, free_port, wait_for_port
 from tests.systems import posix
+from thymio_sim_ros.page_nodes.process import LEVELS, NodeProcess
+from thymio_sim_ros.page_nodes.program import NodeProgram
 
 pytestmark = [pytest.mark.process, posix]
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="isolation needs Linux")
@@ -245,6 +249,32 @@ def test_a_loop_without_end_can_be_stopped(port: int) -> None:
         page.until("on")
         page.send({"op": "stop"})
         assert page.next("ended")["reason"] == ""
+
+
+CLEANS_UP = """
+import time
+print("on", flush=True)
+try:
+    time.sleep(1000)
+finally:
+    print("stopped the motors", flush=True)
+"""
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_a_stop_lets_a_program_clean_up_at_each_level_of_isolation(port: int, level: str) -> None:
+    events: queue.Queue[Mapping[str, Any]] = queue.Queue()
+    node = NodeProcess(NodeProgram("a.py", CLEANS_UP), (level,), events.put, port=port)
+    output = ""
+    while (event := events.get(timeout=PATIENCE_S))["event"] != "ended":
+        output += event.get("text", "")
+        if event["event"] == "ready":
+            node.begin()
+        elif output.endswith("on\n"):
+            node.stop()
+    if event["reason"] == "isolation":
+        pytest.skip(f"this machine gives no {level}")
+    assert output.splitlines()[:2] == ["on", "stopped the motors"]
 
 
 BEHIND = f"""

@@ -96,7 +96,8 @@ class _Commands:
 
 def main() -> int:
     """Supervise the node of the job; return the exit code."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal of the suite, which ends this process
+    # Ctrl-C in the terminal of the suite, which ends this process. Not SIG_IGN, which the program would inherit.
+    signal.signal(signal.SIGINT, lambda _number, _frame: None)
     commands = _Commands()
     if not (line := commands.first()):
         return 0
