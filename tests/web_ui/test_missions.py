@@ -12,7 +12,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import wait_for_port
 from tests.web_ui.page_support import MARKS, drop_file, open_page, resize
-from tests.web_ui.test_page_access import AXE, FINDINGS
+from tests.web_ui.test_page_access import AXE, findings
 from tests.web_ui.test_welcome import visit
 from thymio_sim_ros.missions.shipped import shipped
 
@@ -157,22 +157,38 @@ def test_only_the_languages_of_the_mission_are_offered_and_own_work_stays(world,
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(1280, 800), (1024, 768), (390, 844)])
-def test_list_and_card_are_accessible(world, page, size, scheme):
+def test_all_parts_of_missions_are_accessible(world, page, size):
     if not AXE.exists():
         pytest.skip("axe is not installed")
-    page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
     open_page(page, world("base", "none"))
     resize(page, *size)
     page.add_script_tag(path=str(AXE))
     page.evaluate("document.querySelector('#help-open').click()")
     page.locator("[data-help=missions]").click()
     page.locator(".mission-choice").first.wait_for()
-    assert page.evaluate(FINDINGS) == []
+    assert findings(page) == []
     focused = "document.activeElement.dataset.mission"
     assert page.evaluate(focused) == MISSIONS[0].name  # Enter starts it
     page.keyboard.press("Enter")
     page.locator(CARD).wait_for()
     page.locator("[data-mission-language]").first.wait_for()
-    assert page.evaluate(FINDINGS) == []
+    assert findings(page) == []
+    write(page, "motor.left.target = 500\nmotor.right.target = 500")
+    page.evaluate("document.querySelector('[data-mission-do=hint]').click()")
+    page.evaluate("document.querySelector('[data-verb=run]').click()")
+    page.locator(f"{CARD}[data-state=failed]").wait_for()
+    assert findings(page) == [], "after a try"
+    page.evaluate("document.querySelector('#file-menu').click()")
+    page.evaluate("document.querySelector('[data-verb=share]').click()")
+    page.locator(".sharing .sharing-qr").wait_for()
+    assert findings(page) == [], "sharing"
+    page.keyboard.press("Escape")
+    page.evaluate("document.querySelector('#missions-open').click()")
+    choose(page, "first_node")
+    page.locator(".python .cm-content").wait_for()
+    assert findings(page) == [], "a node"
+    page.locator(".cm-content").fill("1 / 0")
+    page.evaluate("document.querySelector('[data-verb=run]').click()")
+    page.locator(".python-error").wait_for()
+    assert findings(page) == [], "a node with a mistake"
