@@ -32,6 +32,14 @@ test("the running program is shown until the user has changed something", () => 
   assert.equal(session.code, "a = 4");
 });
 
+test("a program of a mission is the user's, also if the robot has the same one from an earlier visit", () => {
+  const { session } = workspace();
+  const text = '<!DOCTYPE aesl-source>\n<network>\n<node nodeId="1" name="thymio-II"></node>\n</network>\n';
+  session.setRobotProgram(ALL, { ...program(text), name: "Off you go.aesl", source: "" });
+  session.show("Off you go", text);
+  assert.deepEqual([session.current.name, session.current.own], ["Off you go.aesl", true]);
+});
+
 test("a new program and an opened file stay when a robot reports its program", () => {
   const { session } = workspace();
   session.setRobotProgram(ALL, program("a = 1"));

@@ -140,6 +140,7 @@ export class Workspace {
     const { current } = this;
     const document = text === "" ? { ...blank(name), own: true } : opened(name, text);
     if (current.name !== name || current.text !== document.text) this.#replace(this.tab, document);
+    else if (!current.own) this.#replace(this.tab, { ...current, own: true }); // the robot has it from an earlier visit
   }
 
   /** @param {string} title */
