@@ -66,9 +66,9 @@ def simulator_with(ros):
 
     context, made = Context(), []
 
-    def make(*arguments, **parameters):
+    def make(*arguments, profile=None, **parameters):
         rclpy.init(args=["--ros-args", *arguments], context=context, domain_id=ros.domain)
-        made.append(Simulator(context, SimulatorParams(**parameters)))
+        made.append(Simulator(context, SimulatorParams(**parameters), profile=profile))
         return made[0]
 
     yield make

@@ -97,7 +97,9 @@ def defaults(suite: SuiteConfig) -> dict[str, Any]:
 
 def targets(name: str, profile: Profile | None = None) -> tuple[Target, ...]:
     """The targets of a parameter of the suite, with the node of a profile if there is one; empty if no node has it."""
-    if profile is not None and any(row.name == name for row in profile.node_parameters):
+    if profile is not None and (
+        any(name == row.name for row in profile.node_parameters) or profile.missing_parameter(name)
+    ):
         return ((profile.node, name),)
     if name in _SPECIAL:
         return _SPECIAL[name]

@@ -1,16 +1,95 @@
-"""What a profile cannot give: a node that asks for it gets one sentence with the reason, whatever it asks with."""
+"""What a profile cannot give: a node that asks for it gets one sentence with the reason, whatever it asks with.
+
+That each type of the other robot is there or missing on purpose follows from the definitions of its package.
+"""
 
 from __future__ import annotations
 
 import pytest
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.srv import GetPlan
+from rcl_interfaces.msg import Log
 from rclpy.action import ActionClient
+from rclpy.parameter import Parameter
 from sensor_msgs.msg import CameraInfo, Image
 from std_srvs.srv import Empty
 from test_msgs.action import Fibonacci
 
 from tests.ros.rclpy_ext.test_connections import beaten
+from thymio_sim_ros.portable_ros.messages import interface_files
+from thymio_sim_ros.ros.profiles import Profile, named
+
+PACKAGES = {"turtlesim": "turtlesim", "turtlebot3": "turtlebot3_msgs", "create3": "irobot_create_msgs"}
+"""The package with the types of a profile's robot."""
+NOT_OF_A_ROBOT = {
+    "turtlebot3_msgs/action/Patrol": "of the examples patrol server and client",
+    "turtlebot3_msgs/msg/Sound": "of ROS 1; now it is a service",
+    "turtlebot3_msgs/msg/VersionInfo": "of ROS 1",
+    "turtlebot3_msgs/srv/Dqn": "between the nodes of the examples for reinforcement learning",
+    "turtlebot3_msgs/srv/Goal": "between the nodes of the examples for reinforcement learning",
+}
+"""Types that no topic, service or action of the robot has, with what they are for."""
+
+
+def rows_of(profile: Profile):
+    return (*profile.topics, *profile.inputs, *profile.services, *profile.actions)
+
+
+def used_types(name: str) -> set[str]:
+    """A type of the graph's definitions, and those of its fields."""
+    found = {name}
+    for section in interface_files.sections(name).values():
+        for line in section.text.splitlines():
+            field = line.partition("#")[0].split(maxsplit=1)
+            short = field[0].partition("[")[0] if field else ""
+            package, _, own = short.rpartition("/")
+            inner = f"{package or name.partition('/')[0]}/msg/{own}"
+            if interface_files.is_package(inner.partition("/")[0]) and interface_files.sections(inner):
+                found |= used_types(inner)
+    return found
+
+
+@pytest.mark.parametrize("like", PACKAGES)
+def test_each_type_of_the_robot_is_there_or_missing_on_purpose(like):
+    profile, package = named(like), PACKAGES[like]
+    there = {used for row in rows_of(profile) for used in used_types(row.type)}
+    missing = {used for one in profile.missing if one.type for used in used_types(one.type)}
+    of_package = {f"{package}/{short}" for short in interface_files.interfaces(package)}
+    assert of_package - there - missing - NOT_OF_A_ROBOT.keys() == set()
+    assert {one.type for one in profile.missing if one.type} - of_package == set()
+    assert not there & ({one.type for one in profile.missing} | NOT_OF_A_ROBOT.keys())
+
+
+@pytest.mark.parametrize("like", PACKAGES)
+def test_nothing_is_there_and_missing(like):
+    profile = named(like)
+    names = {getattr(row, "topic", None) or row.name for row in rows_of(profile)}
+    assert not names & {one.name.lstrip("/") for one in profile.missing}
+    own = {row.name for row in profile.node_parameters}
+    assert not own & {one.name for one in profile.missing_parameters}
+
+
+@pytest.mark.parametrize(
+    ("like", "name", "reason"),
+    [
+        ("turtlesim", "holonomic", "A Thymio cannot drive sideways"),
+        ("create3", "reflexes.REFLEX_BUMP", "has no reflexes: react to hazard_detection"),
+        ("create3", "max_speed", "at most 0.166 m/s"),
+    ],
+)
+def test_a_parameter_of_the_other_robot_is_refused_with_the_reason(simulation, like, name, reason):
+    node = simulation(like=like).simulator._profile.node
+    result = node.set_parameters_atomically([Parameter(name, value=True)])
+    assert not result.successful
+    assert result.reason.startswith(f"{name}: ")
+    assert reason in result.reason
+
+
+def test_a_start_value_of_such_a_parameter_is_answered_too(ros, simulator_with):
+    simulator_with("-p", "turtlesim:holonomic:=true", profile=named("turtlesim"))
+    said = ros.collect(Log, "/rosout", where=lambda log: "holonomic" in log.msg)
+    ros.until(lambda: said)
+    assert said[0].msg.startswith("parameter holonomic has no effect: A Thymio cannot drive sideways")
 
 
 def subscriber(kind, topic):

@@ -11,9 +11,11 @@ from std_srvs.srv import Trigger
 
 from tests import plugin_page
 from thymio_sim_ros.portable_ros.import_hook import is_served
+from thymio_sim_ros.ros.foxglove.types import MissingTypeError
 from thymio_sim_ros.ros.profiles import ParameterRow, Profile, ProfileError, TopicRow, all_profiles, named
 from thymio_sim_ros.ros.rclpy_ext.node_runner import StartError
 from thymio_sim_ros.ros.simulator.node import Simulator, SimulatorParams
+from thymio_sim_ros.ros.simulator.profile import types
 from thymio_sim_ros.ros.simulator.profile.types import usable
 
 ROW = TopicRow("place", "std_msgs/msg/Float64", "pose", lambda kind, reading, _robot: kind(data=reading.truth.x_m))
@@ -36,6 +38,76 @@ def test_every_profile_can_be_used_or_says_what_is_not_installed():
 def test_an_unknown_profile_has_the_nearest_one():
     with pytest.raises(ProfileError, match="found no robot 'turtelsim', expected 'turtlesim'"):
         named("turtelsim")
+
+
+@pytest.fixture
+def installed(monkeypatch):
+    """Let a ROS 2 be installed that has the standard packages and some others.
+
+    No wheel has the packages of other robots, and their classes cannot be used without compiled libraries, so what is
+    replaced is the search for a class.
+    """
+
+    def install(*others):
+        def load(name):
+            package = name.partition("/")[0]
+            if package not in {"geometry_msgs", "sensor_msgs", "std_msgs", "std_srvs", *others}:
+                raise MissingTypeError(name, f"there is no package {package}")
+            return name
+
+        monkeypatch.setattr(types, "load_type", load)
+        monkeypatch.setattr(types.import_hook, "is_served", lambda _name: False)
+
+    return install
+
+
+@pytest.mark.parametrize("like", ["turtlesim", "turtlebot3", "create3"])
+def test_an_installed_ros_with_the_packages_has_all_rows(installed, like):
+    installed("turtlesim", "turtlebot3_msgs", "irobot_create_msgs")
+    found = usable(named(like))
+    assert found.profile == named(like)
+    assert found.left_out == ()
+    assert found.types["geometry_msgs/msg/Twist" if like == "turtlesim" else "sensor_msgs/msg/Imu"]
+
+
+@pytest.mark.parametrize(
+    ("like", "others", "left_out"),
+    [
+        (
+            "turtlesim",
+            (),
+            "pose, color_sensor, spawn, kill, set_pen, teleport_absolute, teleport_relative, rotate_absolute left out,"
+            " since turtlesim is not installed in this ROS 2: install ros-<distribution>-turtlesim, or use the embedded"
+            " graph, which has its types (--portable)",
+        ),
+        (
+            "turtlebot3",
+            ("irobot_create_msgs",),
+            "sensor_state, sound left out, since turtlebot3_msgs is not installed in this ROS 2: install"
+            " ros-<distribution>-turtlebot3-msgs, or use the embedded graph, which has its types (--portable)",
+        ),
+        (
+            "turtlebot3",
+            (),
+            "sensor_state, sound, rotate_angle, drive_distance, navigate_to_position left out, since turtlebot3_msgs"
+            " and irobot_create_msgs are not installed in this ROS 2: install ros-<distribution>-turtlebot3-msgs and"
+            " ros-<distribution>-irobot-create-msgs, or use the embedded graph, which has their types (--portable)",
+        ),
+    ],
+)
+def test_an_installed_ros_without_them_says_which_rows_are_left_out(installed, like, others, left_out):
+    installed(*others)
+    found = usable(named(like))
+    assert found.left_out == (f"--like {like}: {left_out}",)
+    kept = found.profile
+    assert all(row.type in found.types for row in (*kept.topics, *kept.inputs, *kept.services, *kept.actions))
+
+
+def test_a_profile_without_any_row_left_is_refused(installed):
+    installed()
+    profile = replace(PLAIN, topics=(replace(ROW, type="rover_msgs/msg/Place"),))
+    with pytest.raises(ProfileError, match=r"Place is not available: .* expected the package rover_msgs"):
+        usable(profile)
 
 
 @pytest.mark.parametrize(

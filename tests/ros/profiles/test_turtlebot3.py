@@ -11,7 +11,7 @@ from nav_msgs.msg import Odometry
 from rclpy.context import Context
 from rclpy.node import Node
 from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
-from std_srvs.srv import Empty, SetBool
+from std_srvs.srv import Empty, SetBool, Trigger
 
 from tests.ros.rclpy_ext.test_connections import beaten
 from thymio_sim_ros.ros.compat.tf2_messages import TFMessage
@@ -125,6 +125,10 @@ def test_its_services_answer(ros, sim):
     assert call(SetBool, "/motor_power", data=False).success
     sim.step(0.1)
     assert sim.world.robots["thymio"].twist.linear_m_s == 0.0
+    odometry = ros.collect(Odometry, "/odom")
+    sim.until(lambda: odometry and odometry[-1].pose.pose.position.x > 0.02)
+    assert call(Trigger, "/reset").success
+    sim.until(lambda: abs(odometry[-1].pose.pose.position.x) < 0.005)
     assert sim.now > 0.5
     call(Empty, "/reset_simulation")
     assert sim.now < 0.5

@@ -256,13 +256,15 @@ class ParameterRow:
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A topic, service or action of the other robot that does not exist here: `reason` says why and what to use.
+    """A topic, service, action or parameter of the other robot that does not exist here.
 
-    `name` is relative to a robot, or begins with `/`.
+    `reason` says why and what to use. The `name` of a parameter stands also for those below it, `reflexes` for
+    `reflexes.REFLEX_BUMP`; other names are relative to a robot, or begin with `/`. `type` is a type that no row has.
     """
 
     name: str
     reason: str
+    type: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,7 +285,8 @@ class Profile:
         node_parameters: Parameters of `node`.
         begin: Returns the commands with which a robot begins, when it comes and after a reset.
         each_tick: Called with the world after each tick.
-        missing: What the other robot has and this one has not.
+        missing: Topics, services and actions that the other robot has and this one has not.
+        missing_parameters: Parameters of `node` that the other robot has and this one has not.
         programs: Modules by names of packages and of their programs, for `thymio-sim ros2 run PACKAGE NAME`.
         is_optional: Whether rows of missing types are left out without a word.
     """
@@ -306,12 +309,18 @@ class Profile:
     begin: Callable[[ProfileRobot], Sequence[Command]] | None = None
     each_tick: Callable[[ProfileWorld], None] | None = None
     missing: tuple[Missing, ...] = ()
+    missing_parameters: tuple[Missing, ...] = ()
     programs: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     is_optional: bool = False
 
     def __post_init__(self) -> None:
-        if self.node_parameters and not self.node:
+        if (self.node_parameters or self.missing_parameters) and not self.node:
             raise ValueError(f"profile {self.name}: found parameters of its node, expected the name of the node")
+
+    def missing_parameter(self, name: str) -> str:
+        """Why its node does not have a parameter of the other robot; empty for any other name."""
+        found = (one for one in self.missing_parameters if name == one.name or name.startswith(f"{one.name}."))
+        return next((one.reason for one in found), "")
 
 
 def own_names() -> tuple[str, ...]:

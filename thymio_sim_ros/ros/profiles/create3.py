@@ -261,6 +261,7 @@ def _no_reflexes(_world: ProfileWorld, _values: Mapping[str, Any]) -> None:
 
 
 _PACKAGE = "irobot_create_msgs"
+_OF_REFLEXES = ("reflexes_enabled", "reflexes")
 
 PROFILE = Profile(
     "create3",
@@ -360,9 +361,34 @@ PROFILE = Profile(
     ),
     each_tick=play_notes,
     missing=(
-        Missing("ir_opcode", "The simulated robot has no receiver of a dock's infrared; use ir_intensity."),
-        Missing("mouse", "The simulated robot has no optical mouse sensor; use odom."),
-        Missing("slip_status", "The simulated robot does not detect that its wheels slip; compare odom and imu."),
-        Missing("robot_power", "The simulated robot cannot be switched off by ROS; end thymio-sim."),
+        Missing(
+            "ir_opcode",
+            "The simulated robot has no receiver of a dock's infrared; use ir_intensity.",
+            f"{_PACKAGE}/msg/IrOpcode",
+        ),
+        Missing("mouse", "The simulated robot has no optical mouse sensor; use odom.", f"{_PACKAGE}/msg/Mouse"),
+        Missing(
+            "slip_status",
+            "The simulated robot does not detect that its wheels slip; compare odom and imu.",
+            f"{_PACKAGE}/msg/SlipStatus",
+        ),
+        Missing(
+            "robot_power",
+            "The simulated robot cannot be switched off by ROS; end thymio-sim.",
+            f"{_PACKAGE}/srv/RobotPower",
+        ),
+        Missing(
+            "dock_servo",
+            "There is no dock: drive with navigate_to_position. A newer Create 3 has the action dock of the type Dock.",
+            f"{_PACKAGE}/action/DockServo",
+        ),
+    ),
+    missing_parameters=(
+        *(Missing(name, "The simulated robot has no reflexes: react to hazard_detection.") for name in _OF_REFLEXES),
+        *(
+            Missing(name, "A wheel drives at most 0.166 m/s: choose less by cmd_vel, or in a goal.")
+            for name in ("max_speed", "min_speed")
+        ),
+        Missing("wheel_accel_limit", "The motors of the robot limit its acceleration: change cmd_vel step by step."),
     ),
 )

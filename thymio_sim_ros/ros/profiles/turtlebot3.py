@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from thymio_sim_ros.ros.profiles import InputRow, Missing, Profile, ProfileRobot, ProfileWorld, ServiceRow, TopicRow
 from thymio_sim_ros.ros.profiles._actions import OWN_ACTIONS
 from thymio_sim_ros.ros.profiles._body import battery, imu
-from thymio_sim_ros.sim.commands import BodyTwist, Command, PlaySystemSound, StopSound
+from thymio_sim_ros.sim.commands import BodyTwist, Command, PlaySystemSound, SetOdometry, StopSound
 from thymio_sim_ros.sim.model.lidar import Lidar
 
 if TYPE_CHECKING:
@@ -74,6 +74,12 @@ def _motor_power(request: Any, response: Any, robot: ProfileRobot) -> None:
         robot.post(BodyTwist(0.0, 0.0))
     response.success = True
     response.message = "motors are on" if request.data else "wheels stand still until the next velocity"
+
+
+def _reset_odometry(_request: Any, response: Any, robot: ProfileRobot) -> None:
+    robot.post(SetOdometry(0.0, 0.0, 0.0))
+    response.success = True
+    response.message = "the odometry begins anew"
 
 
 def _reset(_request: Any, _response: Any, world: ProfileWorld) -> None:
@@ -138,6 +144,7 @@ PROFILE = Profile(
     services=(
         ServiceRow("sound", "turtlebot3_msgs/srv/Sound", _sound, "play a sound of the robot, 0…5"),
         ServiceRow("motor_power", "std_srvs/srv/SetBool", _motor_power, "stop the wheels"),
+        ServiceRow("reset", "std_srvs/srv/Trigger", _reset_odometry, "let the odometry begin anew"),
         ServiceRow("/reset_simulation", "std_srvs/srv/Empty", _reset, "begin anew, with time 0", is_of_world=True),
         ServiceRow("/reset_world", "std_srvs/srv/Empty", _reset, "begin anew, with time 0", is_of_world=True),
     ),

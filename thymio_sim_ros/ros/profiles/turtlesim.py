@@ -15,6 +15,7 @@ from thymio_sim_ros.engine.motions import Turn
 from thymio_sim_ros.ros.profiles import (
     ActionRow,
     InputRow,
+    Missing,
     ParameterRow,
     Profile,
     ProfileRobot,
@@ -207,6 +208,9 @@ PROFILE = Profile(
     node_parameters=tuple(
         ParameterRow(f"background_{part}", value, f"{color} of the field, 0…255", 0, 255, _paint)
         for part, color, value in zip("rgb", ("Red", "Green", "Blue"), BACKGROUND, strict=True)
+    ),
+    missing_parameters=(
+        Missing("holonomic", "A Thymio cannot drive sideways: linear.y of cmd_vel has no effect, turn and drive."),
     ),
     begin=_begin,
     each_tick=_watch_walls,

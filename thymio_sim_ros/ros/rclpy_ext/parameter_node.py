@@ -50,6 +50,7 @@ class ParameterNode(Node):
         is_free: Callable[[str], bool] | None = None,
         repeat: Callable[[str], str] = lambda _name: "",
         has_acted: Callable[[], bool] = lambda: True,
+        missing: Callable[[str], str] = lambda _name: "",
         **options: Any,
     ) -> None:
         """Create a node.
@@ -62,12 +63,13 @@ class ParameterNode(Node):
             repeat: Says how to get the effect of a parameter again, such as a new world, that has its value already;
                 empty for one without such an effect.
             has_acted: Whether the parameters that were set again have just had an effect.
+            missing: Says why a parameter does not exist on purpose; empty for any other one.
             options: Options of rclpy's node.
 
         Raises StartError for a start value of a parameter of rclpy, such as `use_sim_time`, that has another type.
         """
         self._is_set_again, self._is_free = is_set_again, is_free
-        self._repeat, self._has_acted = repeat, has_acted
+        self._repeat, self._has_acted, self._missing = repeat, has_acted, missing
         try:
             super().__init__(name, context=context, allow_undeclared_parameters=is_free is not None, **options)
         except InvalidParameterTypeException as error:
@@ -98,6 +100,8 @@ class ParameterNode(Node):
         """Return a sentence if the node has no such parameter."""
         if self.has_parameter(wanted.name) or (self._is_free is not None and self._is_free(wanted.name)):
             return ""
+        if reason := self._missing(wanted.name):
+            return f"{wanted.name}: {reason}"
         return parameters.unknown(wanted.name, self.get_fully_qualified_name(), list(self.get_parameters_by_prefix("")))
 
     def _misfit(self, wanted: Parameter) -> str:

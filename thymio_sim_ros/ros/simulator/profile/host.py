@@ -83,7 +83,8 @@ class ProfileHost:
         self.profile = self._usable.profile
         self._has_node = bool(profile.node)
         self._peers: PeerContext | None = None
-        self.node = parameter_node(profile.node, context=context) if self._has_node else simulator
+        missing = profile.missing_parameter
+        self.node = parameter_node(profile.node, context=context, missing=missing) if self._has_node else simulator
         try:
             _declare(self.node, self.profile.node_parameters)
         except StartError:
@@ -94,7 +95,11 @@ class ProfileHost:
         if any(row.is_second for row in self.profile.inputs):
             self._peers = PeerContext([], simulator.context.get_domain_id())
             self._second = self._peers.node(f"_{profile.name}")
-        for sentence in self._usable.left_out:
+        without_effect = {name: missing(name) for name in parameters.overrides(self.node)} if self._has_node else {}
+        for sentence in (
+            *self._usable.left_out,
+            *(f"parameter {name} has no effect: {reason}" for name, reason in without_effect.items() if reason),
+        ):
             self.node.get_logger().warning(sentence)
         self._world: RunningWorld
         self._robots: list[_RobotEndpoints] = []

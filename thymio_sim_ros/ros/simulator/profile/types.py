@@ -52,22 +52,23 @@ def usable(profile: Profile) -> UsableProfile:
             absent[name] = error.reason
     if not absent:
         return UsableProfile(profile, types, ())
-    packages = ", ".join(dict.fromkeys(name.partition("/")[0] for name in absent))
+    packages = list(dict.fromkeys(name.partition("/")[0] for name in absent))
     if not profile.is_optional and (not types or import_hook.is_served("rclpy")):
         name, reason = next(iter(absent.items()))
         raise ProfileError(
-            f"--like {profile.name}: type {name} is not available: {reason}; expected the package {packages}, "
-            "installed or as a folder with its definitions"
+            f"--like {profile.name}: type {name} is not available: {reason}; expected the package"
+            f" {' and '.join(packages)}, installed or as a folder with its definitions"
         )
 
     def kept(rows: Sequence[R]) -> tuple[R, ...]:
         return tuple(row for row in rows if row.type in types)
 
     left_out = [_name_of(row) for row in _rows(profile) if row.type in absent]
+    verb, whose = ("is", "its") if len(packages) == 1 else ("are", "their")
+    of_system = " and ".join(f"ros-<distribution>-{package.replace('_', '-')}" for package in packages)
     sentence = (
-        f"--like {profile.name}: {', '.join(left_out)} left out, since {packages} is not installed in this ROS 2:"
-        f" install ros-<distribution>-{packages.replace('_', '-')}, or use the embedded graph, which has its types"
-        " (--portable)"
+        f"--like {profile.name}: {', '.join(left_out)} left out, since {' and '.join(packages)} {verb} not installed in"
+        f" this ROS 2: install {of_system}, or use the embedded graph, which has {whose} types (--portable)"
     )
     rest = replace(
         profile,
