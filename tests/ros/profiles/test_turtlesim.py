@@ -152,6 +152,27 @@ def test_a_turtle_may_be_spawned_with_any_angle(sim, call):
     assert pose_of(sim, "dizzy")[2] == pytest.approx(6.3 - 2 * math.pi, abs=1e-5)
 
 
+def test_theta_stays_between_minus_and_plus_pi_while_the_turtle_turns(ros, sim):
+    poses = ros.collect(msg.Pose, "/turtle1/pose")
+    drive = ros.publisher(Twist, "/turtle1/cmd_vel")
+    for _ in range(5):
+        drive.publish(Twist(angular=Vector3(z=2.0)))
+        sim.step(0.8)
+    thetas = [pose.theta for pose in poses]
+    assert min(thetas) < -3.0 < 3.0 < max(thetas)
+    assert all(abs(theta) <= math.pi + 1e-6 for theta in thetas)
+
+
+def test_a_clamp_that_cannot_be_seen_is_not_reported(ros, sim):
+    logged = ros.collect(Log, "/rosout", where=lambda log: "clamped" in log.msg)
+    drive = ros.publisher(Twist, "/turtle1/cmd_vel")
+    for fast in (1.801, 3.0):
+        drive.publish(Twist(linear=Vector3(x=fast), angular=Vector3(z=2.0)))
+        sim.step(0.2)
+    sim.until(lambda: logged)
+    assert [line.msg for line in logged if "found 3 units/s and 2 rad/s" not in line.msg] == []
+
+
 def test_turtles_without_end_are_refused(ros, sim, call, monkeypatch):
     monkeypatch.setattr(turtlesim, "MOST_TURTLES", 3)
     logged = ros.collect(Log, "/rosout")

@@ -55,7 +55,7 @@ def _pose(kind: Any, reading: PoseReading, _robot: ProfileRobot) -> Any:
     return kind(
         x=pose.x_m / UNIT_M,
         y=pose.y_m / UNIT_M,
-        theta=pose.yaw_rad,
+        theta=wrap_angle(pose.yaw_rad),
         linear_velocity=speeds.linear_m_s / UNIT_M,
         angular_velocity=speeds.angular_rad_s,
     )
@@ -81,11 +81,11 @@ def _too_fast(message: Any) -> str:
     fastest = max(map(abs, wanted_speeds(BodyTwist(message.linear.x * UNIT_M, message.angular.z))))
     if fastest <= MAX_SPEED_M_S:
         return ""
-    part = MAX_SPEED_M_S / fastest
-    return (
-        f"found {message.linear.x:.3g} units/s and {message.angular.z:.3g} rad/s, the robot drives the same curve with"
-        f" {part * message.linear.x:.3g} units/s and {part * message.angular.z:.3g} rad/s"
+    found, driven = (
+        f"{part * message.linear.x:.3g} units/s and {part * message.angular.z:.3g} rad/s"
+        for part in (1.0, MAX_SPEED_M_S / fastest)
     )
+    return "" if found == driven else f"found {found}, the robot drives the same curve with {driven}"
 
 
 def _finite(**values: float) -> None:
