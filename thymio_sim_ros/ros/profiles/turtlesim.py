@@ -215,6 +215,8 @@ PROFILE = Profile(
     begin=_begin,
     each_tick=_watch_walls,
     programs={
-        "turtlesim": {name: f"thymio_sim_ros.turtlesim.{name}" for name in ("turtle_teleop_key", "turtlesim_node")}
+        "turtlesim": {
+            name: f"thymio_sim_ros.turtlesim.{name}" for name in ("mimic", "turtle_teleop_key", "turtlesim_node")
+        }
     },
 )
