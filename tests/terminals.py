@@ -10,14 +10,13 @@ import select
 import shutil
 import signal
 import subprocess
-import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from tests import pages
 from tests.pages import INTERRUPT, ROOT, Block, Command
 from tests.patience import PATIENCE_S, PROGRAM_S, Deadline
-from tests.processes import free_port, until, wait_until_asleep
+from tests.processes import PYTHON, free_port, until, wait_until_asleep
 
 HAS_ROS2 = importlib.util.find_spec("ros2cli") is not None or shutil.which("ros2") is not None
 NO_ROS2 = "all but the commands `ros2`, which this machine does not have (docs/ros2-tools.md says how to get them)"
@@ -263,7 +262,7 @@ class Reader:
             scripts["ros2"] = f'exec {installed} "$@"'
         for name, script in scripts.items():
             path = self._commands / name
-            path.write_text(f"#!/bin/sh\nPYTHON={sys.executable}\n{script}\n")
+            path.write_text(f"#!/bin/sh\nPYTHON={PYTHON}\n{script}\n")
             path.chmod(0o755)
 
 

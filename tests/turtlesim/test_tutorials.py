@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from importlib.machinery import PathFinder
 from pathlib import Path
 
 import pytest
 
 from tests import terminals
+from tests.processes import PYTHON
 
 pytest.importorskip("rclpy")
 pytestmark = [
@@ -25,6 +27,7 @@ def test_the_tutorials_run_as_written(name: str, ros_domain: int, tmp_path: Path
         reader.follow(text)
 
 
+@pytest.mark.skipif(sys.executable != PYTHON, reason="another computer has no installed ROS (docs/platforms.md)")
 def test_nodes_of_the_tutorials_run_as_written_on_an_installed_ros(ros_domain: int, tmp_path: Path) -> None:
     text = Path(__file__).with_name("libraries.md").read_text(encoding="utf-8")
     text = text.replace("--portable --like turtlesim", "--ros").replace("thymio-sim node ", "python ")
