@@ -54,6 +54,20 @@ def test_it_serves_all_where_there_is_no_ros(without_ros: Path) -> None:
     assert found == "thymio_sim_ros.portable_ros.rclpy std_msgs.msg._string std_srvs.srv.Trigger_Request()"
 
 
+def test_no_folder_is_searched_for_modules_that_are_no_messages(without_ros: Path) -> None:
+    """A process imports hundreds of them, and each search looks into all folders of `sys.path` and above."""
+    program = (
+        "from thymio_sim_ros.portable_ros.import_hook import install\n"
+        "from thymio_sim_ros.portable_ros.messages import own_packages\n"
+        "searched = []\n"
+        "own_packages.source_folders = lambda name: searched.append(name) or ()\n"
+        "install()\n"
+        "import email.mime.text, rclpy.node, std_msgs.msg\n"
+        "print({'email', 'thymio_sim_ros'}.intersection(searched))"
+    )
+    assert _run(program, "-I", "-S", folder=without_ros) == "set()"
+
+
 def test_modules_have_names_from_others_as_those_of_rclpy_do(without_ros: Path) -> None:
     program = (
         "import importlib, warnings\n"

@@ -81,12 +81,14 @@ class _Finder(MetaPathFinder):
                 return None
             has_modules = own.submodule_search_locations is not None
             return ModuleSpec(fullname, _RoomLoader(fullname), origin=own.origin, is_package=has_modules)
-        from thymio_sim_ros.portable_ros.messages.interface_files import PACKAGES, is_module, is_package
+        from thymio_sim_ros.portable_ros.messages.interface_files import FORMS, PACKAGES, is_module, is_package
 
         if top in PACKAGES and (not rest or is_module(fullname)):
             return _messages_spec(fullname)
         name = fullname.rpartition(".")[2]
-        if rest and is_package(top) and is_module(fullname) and not _is_regular(name, path or ()):
+        if rest.partition(".")[0] not in FORMS:  # before folders are searched for the package, which takes long
+            return None
+        if is_package(top) and is_module(fullname) and not _is_regular(name, path or ()):
             return _messages_spec(fullname)
         return None
 
