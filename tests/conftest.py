@@ -1,6 +1,7 @@
 """Fixtures of all tests; those that need ROS come from the package itself, as a teacher would use them."""
 
 import contextlib
+import functools
 import importlib.util
 import io
 import json
@@ -139,6 +140,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items.sort(key=_kind)
 
 
+@functools.cache
 def _uses_graph(path: Path) -> bool:
     return any(folder in path.parents for folder in ROS_FOLDERS)
 

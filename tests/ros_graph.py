@@ -7,6 +7,7 @@ start choose for themselves.
 
 from __future__ import annotations
 
+import functools
 import importlib
 import importlib.util
 import os
@@ -54,6 +55,7 @@ _REAL = (
 """Folders and files of tests that need an installed ROS 2: its middleware, or nodes of other processes."""
 
 
+@functools.cache
 def needs_ros(path: Path | str) -> bool:
     """Whether the tests of a file need an installed ROS 2; the path is absolute, or one from the project's folder."""
     path = _ROOT.parent / path
