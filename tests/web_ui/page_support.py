@@ -90,7 +90,8 @@ def step_into_event(page: Any, selector: str) -> None:
 
 def without_welcome(address: str) -> str:
     """The address with tour and welcome disabled, as for a kiosk."""
-    return f"{address}{'&' if '?' in address else '?'}tour=off&welcome=off"
+    page, mark, fragment = address.partition("#")
+    return f"{page}{'&' if '?' in page else '?'}tour=off&welcome=off{mark}{fragment}"
 
 
 def open_page(page: Any, address: str, *, unfold: bool = True) -> None:

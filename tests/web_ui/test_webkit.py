@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -9,6 +10,9 @@ import pytest
 
 pytest.importorskip("selenium")
 
+from tests.nginx import Nginx
+from tests.patience import until
+from tests.processes import SUITE, Process, free_port
 from tests.web_ui.page_support import MARKS
 from tests.web_ui.webkit import WebKitPage, webkit_driver
 
@@ -98,6 +102,26 @@ def test_the_page_draws_the_world_and_its_buttons_drive_the_robot(webkit, world,
     wait_until_it_drives(webkit)
     webkit.release()
     webkit.wait("return Math.abs(window.thymio.state().robot.wheelSpeeds.left) < 0.1")
+
+
+def test_behind_a_proxy_with_tls_and_a_path_a_program_drives_the_robot(webkit, tmp_path):
+    port = free_port()
+    proxy = Nginx(tmp_path / "nginx", port)
+    options = ("--portable", "--port", str(port), "--no-foxglove-port", "--trusted-proxy", "127.0.0.1")
+    suite = Process(tmp_path, SUITE, *options)
+    try:
+        until(lambda: "Stop " in suite.output, lambda: suite.output)
+        token = re.search(r"^Page .*#token=(\S+)", suite.output, re.MULTILINE)
+        assert token is not None, suite.output
+        webkit.open(f"{proxy.address}#token={token[1]}")
+        begin(webkit, "empty")
+        webkit.click(".cm-content")
+        webkit.type("motor.left.target = 100\nmotor.right.target = 100")
+        run(webkit)
+        wait_until_it_drives(webkit)
+    finally:
+        proxy.end()
+        suite.end()
 
 
 def test_a_text_is_typed_at_the_speed_of_a_pupil_and_runs(webkit, world):

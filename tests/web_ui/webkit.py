@@ -65,13 +65,14 @@ class WebKitPage:
 
         options = Options()
         options.page_load_strategy = "none"
+        options.accept_insecure_certs = True  # a proxy of a test has signed its certificate itself
         self._browser = Remote(RemoteConnection(client_config=ClientConfig(driver)), options=options)
         self._browser.set_window_size(*SIZE)
 
     def open(self, address: str) -> None:
         """Load the page, and wait for the robot and the state of the simulator."""
         self._browser.get(without_welcome(address))
-        self.wait("return location.protocol === 'http:' && document.body !== null")
+        self.wait("return location.protocol.startsWith('http') && document.body !== null")
         self.run(NOTE_ERRORS)
         self.wait("return window.thymio?.connected && window.thymio.partPosition('robot') != null")
         self.wait("return window.thymio.state().simulator !== null")
