@@ -157,13 +157,13 @@ def test_what_is_no_message_closes_the_connection(port: int, message: str | byte
             page.next("ready")
 
 
-@pytest.mark.parametrize("text", ["a\0b", "'\ud800'", "#" * 100_001])
-def test_what_is_no_program_is_refused_and_the_page_goes_on(port: int, text: str) -> None:
+def test_what_is_no_program_is_refused_and_the_page_goes_on(port: int) -> None:
     with Page(port) as page:
-        page.send({"op": "run", "text": text})
-        ended = page.next("ended")
-        assert ended["reason"] == "refused"
-        assert "expected" in ended["text"]
+        for text in ("a\0b", "'\ud800'", "#" * 100_001):
+            page.send({"op": "run", "text": text})
+            ended = page.next("ended")
+            assert ended["reason"] == "refused"
+            assert "expected" in ended["text"]
         assert page.result("print(2)")[0] == "2\n"
 
 
