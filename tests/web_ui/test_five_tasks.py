@@ -221,7 +221,7 @@ def test_the_five_tasks_by_what_the_page_says(hand, tmp_path):
 
     hand.task = "ros"
     hand.choose("button", "Help and tour")
-    hand.choose("menuitem", "Show the three ways to start")
+    hand.choose("menuitem", "Show the ways to start")
     hand.choose("button", "Show me the topics")
     hand.choose("button", "Copy the command", "#welcome-ros")
     playwright.expect(page.locator("#welcome-ros")).to_contain_text("Copied")

@@ -148,7 +148,7 @@ def test_a_choice_is_for_good_and_the_question_mark_shows_the_starts_again(first
     wait_for_frame(page)
     playwright.expect(page.locator(STARTS)).to_have_count(0)
     open_menu(page, "#help-open")
-    page.get_by_role("menuitem", name="Show the three ways to start").click()
+    page.get_by_role("menuitem", name="Show the ways to start").click()
     page.locator(STARTS).wait_for()
     open_tab(page, "robot")  # something else was chosen
     playwright.expect(page.locator(STARTS)).to_have_count(0)
