@@ -210,7 +210,7 @@ def test_pages_from_elsewhere_are_refused(server):
 
 
 def test_a_page_whose_name_is_no_text_is_refused(server):
-    request = b"GET /nodes HTTP/1.1\r\nHost: localhost\r\nOrigin: http://local\x84ost\r\n\r\n"
+    request = b"GET /nodes HTTP/1.1\r\nHost: localhost\r\nOrigin: http://local\x84ost\r\nConnection: close\r\n\r\n"
     assert b" 403 " in talk(server, request).split(b"\r\n")[0]
     assert server.problems == [
         ("origin", "web page from http://local\ufffdost rejected: add it to allowed_origins if it is yours")
