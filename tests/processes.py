@@ -9,7 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,8 @@ _PORTS = range(20_000, 32_000)
 """Below those that systems choose themselves: from 32 768 on, or 49 152."""
 _STRIDE = 1009
 _taken = itertools.count()
+_REPEAT = 200
+"""Turns of the executors of a test, of 5 ms at most, after which a request to a node is repeated."""
 
 
 PYTHON = os.path.abspath(os.environ.get("THYMIO_TEST_PYTHON") or sys.executable)
@@ -136,6 +138,25 @@ def wait_for_port(port: int) -> None:
             return probe.connect_ex(("127.0.0.1", port)) == 0
 
     until(listens, lambda: f"no process listens on port {port}")
+
+
+def is_spinning(ros: Any, name: str) -> Callable[[], bool]:
+    """Whether a node answers a request for its parameters, which only one that spins does.
+
+    The request is repeated: a service that has not yet found its new client drops the answer.
+    """
+    from rcl_interfaces.srv import ListParameters
+
+    client = ros.node.create_client(ListParameters, f"/{name}/list_parameters")
+    requests: list[Any] = []
+    turns = itertools.count()
+
+    def has_answered() -> bool:
+        if client.service_is_ready() and next(turns) % _REPEAT == 0:
+            requests.append(client.call_async(ListParameters.Request()))
+        return any(request.done() for request in requests)
+
+    return has_answered
 
 
 def wait_until_asleep(pid: int) -> None:

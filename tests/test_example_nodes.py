@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +13,7 @@ import pytest
 
 from tests import pages, ros_graph
 from tests.patience import PATIENCE_S
-from tests.processes import wait_until_asleep
+from tests.processes import is_spinning, wait_until_asleep
 from thymio_sim_ros import examples
 
 pytest.importorskip("rclpy")
@@ -33,8 +31,6 @@ EXAMPLES = [
     for path in sorted(Path(examples.__file__).parent.glob("*.py"))
     if path.stem != "__init__"
 ]
-REPEAT = 200
-"""Turns of the executors, of 5 ms at most, after which a request is repeated."""
 
 
 def test_the_pages_show_nodes() -> None:
@@ -64,22 +60,3 @@ def test_a_node_of_a_page_ends_cleanly_on_ctrl_c(ros: Any, tmp_path: Path, sourc
             node.kill()
     assert "Traceback" not in output, output
     assert node.returncode == 0, output
-
-
-def is_spinning(ros: Any, name: str) -> Callable[[], bool]:
-    """Whether a node answers a request for its parameters, which only one that spins does.
-
-    The request is repeated: a service that has not yet found its new client drops the answer.
-    """
-    from rcl_interfaces.srv import ListParameters
-
-    client = ros.node.create_client(ListParameters, f"/{name}/list_parameters")
-    requests: list[Any] = []
-    turns = itertools.count()
-
-    def has_answered() -> bool:
-        if client.service_is_ready() and next(turns) % REPEAT == 0:
-            requests.append(client.call_async(ListParameters.Request()))
-        return any(request.done() for request in requests)
-
-    return has_answered
