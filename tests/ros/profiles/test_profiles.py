@@ -110,10 +110,23 @@ def test_a_profile_without_any_row_left_is_refused(installed):
         usable(profile)
 
 
+def test_the_embedded_graph_is_named_only_if_it_has_the_types(installed):
+    installed()
+    found = usable(replace(PLAIN, topics=(ROW, replace(ROW, topic="site", type="rover_msgs/msg/Place"))))
+    assert found.left_out == (
+        "--like plain: site left out, since rover_msgs is not installed in this ROS 2: install"
+        " ros-<distribution>-rover-msgs",
+    )
+
+
 @pytest.mark.parametrize(
     ("profile", "reason"),
     [
         (replace(PLAIN, topics=(replace(ROW, topic="odom"),)), "found 'odom', which the robot itself has"),
+        (
+            replace(PLAIN, topics=(ROW, replace(ROW, topic="site", type="std_msgs/msg/Flot64"))),
+            "found no type std_msgs/msg/Flot64, expected 'std_msgs/msg/Float64'",
+        ),
         (replace(PLAIN, topics=(ROW, ROW)), "found 'place' twice"),
         (replace(PLAIN, node="web_ui"), "found the node 'web_ui', which the suite has already"),
         (replace(PLAIN, replaces=frozenset({"odo"})), "found 'odo' among the names that it replaces"),

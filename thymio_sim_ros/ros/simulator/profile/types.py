@@ -8,11 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from thymio_sim_ros.portable_ros import import_hook
+from thymio_sim_ros.portable_ros.messages import interface_files
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, load_type
 from thymio_sim_ros.ros.interface import sensor_topics
 from thymio_sim_ros.ros.interface.robot_inputs import robot_inputs
 from thymio_sim_ros.ros.profiles import ActionRow, InputRow, Profile, ProfileError, ServiceRow, TopicRow
 from thymio_sim_ros.ros.simulator.robot_endpoints import SERVICES
+from thymio_sim_ros.sim.model import fields
 from thymio_sim_ros.sim.sensors import all_sensors
 
 __all__ = ["UsableProfile", "usable"]
@@ -40,7 +42,7 @@ def usable(profile: Profile) -> UsableProfile:
 
     On an installed ROS 2, rows whose package is not installed are left out: the others, with types that every ROS 2
     has, work. Raises ProfileError for a profile without a row that can be used, for types that the embedded graph does
-    not know, and for names that robots or nodes have already.
+    not know, for a type that a known package does not have, and for names that robots or nodes have already.
     """
     _check_names(profile)
     types: dict[str, Any] = {}
@@ -49,6 +51,7 @@ def usable(profile: Profile) -> UsableProfile:
         try:
             types[name] = load_type(name)
         except MissingTypeError as error:
+            _check_type(profile, name)
             absent[name] = error.reason
     if not absent:
         return UsableProfile(profile, types, ())
@@ -65,10 +68,11 @@ def usable(profile: Profile) -> UsableProfile:
 
     left_out = [_name_of(row) for row in _rows(profile) if row.type in absent]
     verb, whose = ("is", "its") if len(packages) == 1 else ("are", "their")
+    elsewhere = f", or use the embedded graph, which has {whose} types (--portable)"
     of_system = " and ".join(f"ros-<distribution>-{package.replace('_', '-')}" for package in packages)
     sentence = (
         f"--like {profile.name}: {', '.join(left_out)} left out, since {' and '.join(packages)} {verb} not installed in"
-        f" this ROS 2: install {of_system}, or use the embedded graph, which has {whose} types (--portable)"
+        f" this ROS 2: install {of_system}{elsewhere if all(map(interface_files.is_package, packages)) else ''}"
     )
     rest = replace(
         profile,
@@ -86,6 +90,14 @@ def _rows(profile: Profile) -> Iterable[TopicRow | InputRow | ServiceRow | Actio
 
 def _name_of(row: TopicRow | InputRow | ServiceRow | ActionRow) -> str:
     return row.topic if isinstance(row, TopicRow | InputRow) else row.name
+
+
+def _check_type(profile: Profile, name: str) -> None:
+    """Raise ProfileError for a type that does not exist, though the definitions of its package are known."""
+    package, _, short = name.partition("/")
+    if interface_files.is_package(package) and short not in interface_files.interfaces(package):
+        known = tuple(f"{package}/{other}" for other in interface_files.interfaces(package))
+        raise ProfileError(f"--like {profile.name}: found no type {name}, expected {fields.nearest(name, known)}")
 
 
 def _check_names(profile: Profile) -> None:
