@@ -115,6 +115,16 @@ def test_a_package_is_found_by_its_manifest_or_where_it_is_installed(tmp_path: P
 
 
 @pytest.mark.process
+def test_a_program_without_a_package_of_types_says_where_to_put_it(tmp_path: Path) -> None:
+    file = tmp_path / "lost.py"
+    for module, is_of_types in (("nav2_msgs.action", True), ("cv2_nowhere", False)):
+        file.write_text(f"import {module}\n", encoding="utf-8")
+        said = _run(file).stderr
+        assert "ModuleNotFoundError: No module named" in said
+        assert ("no types of nav2_msgs: copy the folder of that package" in said) == is_of_types
+
+
+@pytest.mark.process
 def test_a_wrong_definition_names_its_file_and_line(workspace: Path) -> None:
     _add(
         workspace / "wrong",

@@ -11,6 +11,8 @@ from types import TracebackType
 __all__ = ["run_program"]
 
 _FAILED = 1
+_OF_INTERFACES = ("_msgs", "_srvs", "_interfaces")
+"""Ends of the names of packages with types."""
 _NOT_ITS_OWN = (__file__, "<frozen runpy>", runpy.__file__)
 
 
@@ -29,6 +31,11 @@ def run_program(target: str, arguments: Sequence[str], *, is_module: bool) -> in
             sys.path[0] = str(Path(target).resolve().parent)
             runpy.run_path(target, run_name="__main__")
     except Exception as error:
+        if isinstance(error, ModuleNotFoundError) and (error.name or "").endswith(_OF_INTERFACES):
+            error.add_note(
+                f"The embedded graph has no types of {error.name}: copy the folder of that package, with its msg, srv"
+                " or action files, beside your package, into src of your workspace."
+            )
         trace = _from_program(error.__traceback__)
         sys.excepthook(type(error), error.with_traceback(trace), trace)
         return _FAILED
