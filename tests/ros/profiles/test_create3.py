@@ -8,9 +8,10 @@ import math
 import pytest
 from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Duration
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PoseStamped, Twist, Vector3
 from nav_msgs.msg import Odometry
 from rclpy.action import ActionClient
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from tests import ros_graph
 from tests.ros.profiles.test_actions import WALL_AHEAD, pose
@@ -76,6 +77,14 @@ def call(ros, sim):
 
 def detections(message):
     return {(one.type, one.header.frame_id) for one in message.detections}
+
+
+@pytest.mark.parametrize("reliability", [ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT])
+def test_velocities_of_either_reliability_drive_the_robot(ros, sim, reliability):
+    publisher = ros.node.create_publisher(Twist, "/cmd_vel", QoSProfile(depth=1, reliability=reliability))
+    ros.until(publisher.get_subscription_count)
+    publisher.publish(Twist(linear=Vector3(x=0.1)))
+    sim.until(lambda: sim.world.robots["thymio"].twist.linear_m_s > 0.05)
 
 
 def test_a_bump_is_detected_where_the_robot_touches(ros, sim):

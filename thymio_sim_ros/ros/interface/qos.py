@@ -44,6 +44,13 @@ KINDS: dict[str, tuple[QoSProfile, str]] = {
 """Profiles by their name in docs/ros.md, with their purpose; all are reliable, keep last."""
 
 
+def best_effort(profile: QoSProfile) -> QoSProfile:
+    """Return a profile without reliability, for a subscription that publishers of either reliability reach."""
+    changed = copy.copy(profile)
+    changed.reliability = ReliabilityPolicy.BEST_EFFORT
+    return changed
+
+
 def kind_of(profile: QoSProfile) -> str:
     """Return the name of a profile."""
     return next(kind for kind, (known, _) in KINDS.items() if known is profile)

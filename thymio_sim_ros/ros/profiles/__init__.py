@@ -179,6 +179,7 @@ class InputRow:
     `commands` returns the commands of a message, or raises ValueError to reject it; `limit_check` describes what
     will be clamped.
     `is_second`: the robot has the topic with another type already; both are there.
+    `is_best_effort`: publishers of either reliability reach it.
     """
 
     topic: str
@@ -188,6 +189,7 @@ class InputRow:
     kind: str = "command"
     limit_check: Callable[[Any], str] = lambda _message: ""
     is_second: bool = False
+    is_best_effort: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,16 +1,19 @@
-"""Readings of a robot as the messages that mobile robots for courses have in common."""
+"""Readings and velocities of a robot as the messages that mobile robots for courses have in common."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.ros.profiles import ProfileRobot
 from thymio_sim_ros.sim.model.robot_constants import GRAVITY_M_S2
 
 if TYPE_CHECKING:
+    from thymio_sim_ros.ros.interface.robot_inputs import InputContext
+    from thymio_sim_ros.sim.commands import Command
     from thymio_sim_ros.sim.model.readings import BatteryReading, PoseReading
 
-__all__ = ["battery", "imu"]
+__all__ = ["battery", "drive", "imu", "too_fast"]
 
 _BEFORE = "imu.before"
 _ORIENTATION_VARIANCE, _RATE_VARIANCE, _ACCELERATION_VARIANCE = 1e-4, 4e-6, 3e-4
@@ -58,3 +61,17 @@ def battery(frame: str, reading: BatteryReading, robot: ProfileRobot) -> Any:
     message = convert_sensors.battery(reading, robot.names, None)
     message.header.frame_id = robot.names.fixed_frame(frame) if frame else ""
     return message
+
+
+def drive(message: Any, context: InputContext, _robot: ProfileRobot) -> Sequence[Command]:
+    """Return the command of a Twist. Raises CommandError for a velocity that is no number."""
+    from thymio_sim_ros.ros.interface.command_checks import body_twist
+
+    return (body_twist(message, context.timeout_ns),)
+
+
+def too_fast(message: Any) -> str:
+    """Return how a Twist is clamped; empty if it is not."""
+    from thymio_sim_ros.ros.interface import saturation
+
+    return saturation.twist(message)

@@ -23,7 +23,7 @@ from thymio_sim_ros.ros.profiles import (
     TopicRow,
 )
 from thymio_sim_ros.ros.profiles._actions import DRIVE_ARC, OWN_ACTIONS
-from thymio_sim_ros.ros.profiles._body import battery, imu
+from thymio_sim_ros.ros.profiles._body import battery, drive, imu, too_fast
 from thymio_sim_ros.ros.profiles._lights_and_notes import Animation, Melody, lights, notes, play_notes
 from thymio_sim_ros.ros.profiles._wall_follow import WALL_FOLLOW
 from thymio_sim_ros.sim.commands import (
@@ -269,7 +269,7 @@ PROFILE = Profile(
     node="motion_control",
     playground="turtlebot3",
     program="none",
-    replaces=frozenset({"imu"}),
+    replaces=frozenset({"imu", "cmd_vel"}),
     topics=(
         TopicRow(
             "hazard_detection",
@@ -322,6 +322,14 @@ PROFILE = Profile(
         TopicRow("dock_status", f"{_PACKAGE}/msg/DockStatus", "battery", _dock, "false: there is no dock"),
     ),
     inputs=(
+        InputRow(
+            "cmd_vel",
+            "geometry_msgs/msg/Twist",
+            drive,
+            "linear.x in m/s and angular.z in rad/s; scaled down together above the limit of the wheels",
+            limit_check=too_fast,
+            is_best_effort=True,
+        ),
         InputRow(
             "cmd_lightring",
             f"{_PACKAGE}/msg/LightringLeds",

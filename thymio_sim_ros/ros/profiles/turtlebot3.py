@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.ros.profiles import InputRow, Missing, Profile, ProfileRobot, ProfileWorld, ServiceRow, TopicRow
 from thymio_sim_ros.ros.profiles._actions import OWN_ACTIONS
-from thymio_sim_ros.ros.profiles._body import battery, imu
+from thymio_sim_ros.ros.profiles._body import battery, drive, imu, too_fast
 from thymio_sim_ros.sim.commands import BodyTwist, Command, PlaySystemSound, SetOdometry, StopSound
 from thymio_sim_ros.sim.model.lidar import Lidar
 
@@ -49,16 +49,12 @@ def _sensor_state(kind: Any, reading: MotorReading, robot: ProfileRobot) -> Any:
     return stamped(message, reading.stamp_ns, "")
 
 
-def _stamped(message: Any, context: InputContext, _robot: ProfileRobot) -> Sequence[Command]:
-    from thymio_sim_ros.ros.interface.command_checks import body_twist
-
-    return (body_twist(message.twist, context.timeout_ns),)
+def _stamped(message: Any, context: InputContext, robot: ProfileRobot) -> Sequence[Command]:
+    return drive(message.twist, context, robot)
 
 
 def _too_fast(message: Any) -> str:
-    from thymio_sim_ros.ros.interface import saturation
-
-    return saturation.twist(message.twist)
+    return too_fast(message.twist)
 
 
 def _sound(request: Any, response: Any, robot: ProfileRobot) -> None:

@@ -218,7 +218,10 @@ def _input(row: InputRow, kind: Any, robot: RunningRobot) -> RobotInput:
         except ValueError as error:
             raise CommandError(str(error)) from error
 
-    return RobotInput(row.topic, kind, commands, row.about, qos.KINDS[row.kind][0], row.limit_check)
+    profile = qos.KINDS[row.kind][0]
+    if row.is_best_effort:
+        profile = qos.best_effort(profile)
+    return RobotInput(row.topic, kind, commands, row.about, profile, row.limit_check)
 
 
 def _declare(node: Node, rows: Sequence[ParameterRow]) -> None:
