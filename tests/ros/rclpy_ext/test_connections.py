@@ -80,6 +80,14 @@ def test_the_right_type_is_not_reported(ros, simulation, stranger):
     assert known.unconnected == ()
 
 
+def test_no_hidden_name_is_proposed(ros, simulation, strange_node):
+    """`/_led/state` is a topic of each robot, and `/state` is one of many students."""
+    sim = simulation()
+    strange_node("report").create_subscription(String, "/state", lambda _message: None, 1)
+    ros.until(lambda: ros.node.count_subscribers("/state"))
+    assert sim.simulator._connections.find(is_settled=True) == ()
+
+
 def sentences(ros, sim, topic):
     """Wait until an endpoint of a topic is reported, and return the sentences about it."""
     return ros.until(lambda: [str(one) for one in beaten(sim.simulator) if one.topic == topic])

@@ -24,6 +24,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
+from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
 from thymio_sim_ros.lockstep.matching import fit
 from thymio_sim_ros.names.type_names import type_name
@@ -153,7 +154,7 @@ class _OwnNames:
             self.types.setdefault(name, kind)
         self._by_word: dict[str, list[str]] = {}
         for name in self.types:
-            if (word := _last(name)) not in _OF_EVERY_NODE:
+            if (word := _last(name)) not in _OF_EVERY_NODE and not topic_or_service_is_hidden(name):
                 self._by_word.setdefault(word, []).append(name)
         self._plain = {_plain(word): word for word in sorted(self._by_word)}
         self._similar: dict[str, str | None] = {}
