@@ -101,7 +101,7 @@ RULES = {
     ),
     # the verbs of ros2 that tutorials need: a node of its own, on any graph
     f"{OURS}.ros_commands": Rule(
-        _names("bags.qos", "portable_ros.messages.message_class", "ros_commands")
+        _names("bags.qos", "portable_ros.messages.message_class", "ros.profiles", "ros_commands")
         | _names("ros.foxglove.json_messages", "ros.foxglove.schemas", "ros.foxglove.types"),
         ROS | {"yaml"},
     ),

@@ -145,6 +145,41 @@ def test_a_mistake_is_one_line_with_what_is_there(run, talker, words, reason):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("nodes", "words", "reason"),
+    [
+        (
+            ["simulator", "motion_control"],
+            "topic echo --once /mouse",
+            "topic /mouse: The simulated robot has no optical",
+        ),
+        (
+            ["simulator", "motion_control"],
+            "param get /ui_mgr x",
+            "node /ui_mgr: This node of a Create 3 does not exist",
+        ),
+        (
+            ["simulator", "motion_control"],
+            "param get /motion_control max_speed",
+            "parameter max_speed of /motion_control: A wheel drives at most 0.166 m/s",
+        ),
+        (
+            ["simulator", "turtlesim"],
+            "param describe /turtlesim holonomic",
+            "parameter holonomic of /turtlesim: A Thymio cannot",
+        ),
+        (["simulator"], "action info /navigate_to_pose", "action /navigate_to_pose: Nav2 does not run here"),
+        (["simulator", "turtlesim"], "topic type /mouse", "topic /mouse; there are"),
+        (["other"], "topic type /mouse", "topic /mouse; there are"),
+    ],
+)
+def test_what_the_simulator_does_not_have_on_purpose_is_answered_with_the_reason(run, make_node, nodes, words, reason):
+    for name in nodes:
+        make_node(name)
+    with pytest.raises(CommandError, match=f"found no {reason}"):
+        run(*words.split())
+
+
 def test_messages_are_published_until_their_number_is_reached(run, talker):
     printed = run("topic", "pub", "-t", "2", "-r", "100", "/lab/drive", "geometry_msgs/Twist", "{linear: {x: 1}}")
     assert printed.startswith("publisher: beginning loop\npublishing #1: geometry_msgs.msg.Twist(")

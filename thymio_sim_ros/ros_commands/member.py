@@ -14,6 +14,7 @@ from rclpy.node import Node
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
 from thymio_sim_ros.ros.foxglove.types import MissingTypeError, full_name, load_type
+from thymio_sim_ros.ros.profiles import missing_name
 from thymio_sim_ros.ros_commands.errors import CommandError
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ _NEW_S = 1.0
 """Longest wait for something that need not be there."""
 ANSWER_S = 5.0
 """Longest wait for the response of a service that answers at once."""
+_SIMULATOR = "/simulator"
 _MOST_NAMES = 8
 """Names that an error lists."""
 
@@ -104,8 +106,14 @@ class Member:
         """The full name of something that is there now or soon. Raises CommandError with what is there."""
         full = name if name.startswith("/") else f"/{name}"
         if not self.wait(lambda: full in known()):
-            raise CommandError(f"found no {what} {full}{_instead(full, known())}")
+            raise CommandError(f"found no {what} {full}{self._why_missing(what, full) or _instead(full, known())}")
         return full
+
+    def _why_missing(self, what: str, full: str) -> str:
+        """The end of an error about a name that the simulator does not have on purpose, with `--like`."""
+        nodes = self.nodes()
+        reason = missing_name(f"{full}/" if what == "node" else full, nodes) if _SIMULATOR in nodes else ""
+        return f": {reason}" if reason else ""
 
     def find_type(self, what: str, name: str, known: Callable[[], NamesAndTypes]) -> tuple[str, str]:
         """The full name of a topic, service or action and its type. Raises CommandError."""

@@ -18,6 +18,7 @@ from rclpy.parameter import (
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
 
+from thymio_sim_ros.ros.profiles import missing_parameter
 from thymio_sim_ros.ros_commands.errors import CommandError
 from thymio_sim_ros.ros_commands.member import ANSWER_S, Member
 
@@ -106,7 +107,8 @@ def _describe(member: Member, options: argparse.Namespace) -> None:
 
 
 def _unknown(name: str, full: str) -> CommandError:
-    return CommandError(f"found no parameter {name} of {full}: `param list {full}` prints its parameters")
+    reason = missing_parameter(full, name) or f"`param list {full}` prints its parameters"
+    return CommandError(f"found no parameter {name} of {full}: {reason}")
 
 
 def _dump(member: Member, options: argparse.Namespace) -> None:

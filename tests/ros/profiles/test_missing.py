@@ -9,6 +9,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.srv import GetPlan
 from rcl_interfaces.msg import Log
+from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.action import ActionClient
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import CameraInfo, Image
@@ -64,7 +65,7 @@ def test_each_type_of_the_robot_is_there_or_missing_on_purpose(like):
 def test_nothing_is_there_and_missing(like):
     profile = named(like)
     names = {getattr(row, "topic", None) or row.name for row in rows_of(profile)}
-    assert not names & {one.name.lstrip("/") for one in profile.missing}
+    assert not names & {one.name.strip("/") for one in profile.missing}
     own = {row.name for row in profile.node_parameters}
     assert not own & {one.name for one in profile.missing_parameters}
 
@@ -83,6 +84,12 @@ def test_a_parameter_of_the_other_robot_is_refused_with_the_reason(simulation, l
     assert not result.successful
     assert result.reason.startswith(f"{name}: ")
     assert reason in result.reason
+
+
+def test_a_topic_may_have_the_name_of_a_missing_node():
+    profile = named("create3")
+    assert profile.missing_name("/robot_state") == ""
+    assert profile.missing_name("/robot_state/") == profile.missing_name("/robot_state/get_parameters") != ""
 
 
 def test_a_start_value_of_such_a_parameter_is_answered_too(ros, simulator_with):
@@ -121,6 +128,9 @@ def action_client(action):
         ("turtlebot3", client(GetPlan, "/gazebo/get_entity_state"), "use /simulator/get_poses"),
         ("create3", subscriber(Image, "/mouse"), "has no optical mouse sensor; use odom"),
         ("create3", client(Empty, "robot_power"), "cannot be switched off by ROS; end thymio-sim"),
+        ("create3", client(SetParameters, "/ui_mgr/set_parameters"), "/motion_control and /simulator have parameters"),
+        ("create3", client(SetParameters, "/r1/motion_control/set_parameters"), "without the name of a robot"),
+        ("turtlebot3", client(GetParameters, "/turtlebot3_node/get_parameters"), "/simulator has parameters"),
     ],
 )
 def test_the_reason_is_given(ros, simulation, strange_node, like, ask, reason):

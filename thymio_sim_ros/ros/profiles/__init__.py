@@ -10,7 +10,7 @@ Without a profile nothing here is loaded by a suite.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
@@ -44,6 +44,8 @@ __all__ = [
     "ServiceRow",
     "TopicRow",
     "all_profiles",
+    "missing_name",
+    "missing_parameter",
     "named",
     "own_names",
 ]
@@ -258,10 +260,11 @@ class ParameterRow:
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A topic, service, action or parameter of the other robot that does not exist here.
+    """A topic, service, action, node or parameter of the other robot that does not exist here.
 
-    `reason` says why and what to use. The `name` of a parameter stands also for those below it, `reflexes` for
-    `reflexes.REFLEX_BUMP`; other names are relative to a robot, or begin with `/`. `type` is a type that no row has.
+    `reason` says why and what to use. A `name` stands also for those below it, `reflexes` for `reflexes.REFLEX_BUMP`;
+    that of a node ends with `/`, so that a topic may have it. Names other than those of parameters are relative to a
+    robot, or begin with `/`. `type` is a type that no row has.
     """
 
     name: str
@@ -287,7 +290,7 @@ class Profile:
         node_parameters: Parameters of `node`.
         begin: Returns the commands with which a robot begins, when it comes and after a reset.
         each_tick: Called with the world after each tick.
-        missing: Topics, services and actions that the other robot has and this one has not.
+        missing: Topics, services, actions and nodes that the other robot has and this one has not.
         missing_parameters: Parameters of `node` that the other robot has and this one has not.
         programs: Modules by names of packages and of their programs, for `thymio-sim ros2 run PACKAGE NAME`.
         is_optional: Whether rows of missing types are left out without a word.
@@ -319,6 +322,17 @@ class Profile:
         if (self.node_parameters or self.missing_parameters) and not self.node:
             raise ValueError(f"profile {self.name}: found parameters of its node, expected the name of the node")
 
+    def missing_name(self, name: str) -> str:
+        """Why a topic, service, action or node of the other robot does not exist here; empty for any other name.
+
+        `name` is the full name, that of a node with `/` at its end.
+        """
+        for one in self.missing:
+            below, full = (one.name, name) if one.name.endswith("/") else (f"{one.name}/", f"{name}/")
+            if full.startswith(below) if below.startswith("/") else f"/{below}" in full:
+                return one.reason
+        return ""
+
     def missing_parameter(self, name: str) -> str:
         """Why its node does not have a parameter of the other robot; empty for any other name."""
         found = (one for one in self.missing_parameters if name == one.name or name.startswith(f"{one.name}."))
@@ -333,6 +347,23 @@ def own_names() -> tuple[str, ...]:
 def all_profiles() -> tuple[Profile, ...]:
     """All profiles, of this package and of other packages, in order of name."""
     return registry.collect(sys.modules[__name__], "PROFILE", Profile)
+
+
+def missing_name(name: str, nodes: Collection[str]) -> str:
+    """Why a graph with these nodes has no topic, service, action or node (`Profile.missing_name`) of a name; or ""."""
+    return next(filter(None, (profile.missing_name(name) for profile in _running(nodes))), "")
+
+
+def missing_parameter(node: str, name: str) -> str:
+    """Why a node does not have a parameter; empty if it is not known."""
+    return next(filter(None, (profile.missing_parameter(name) for profile in _running([node]) if profile.node)), "")
+
+
+def _running(nodes: Collection[str]) -> Sequence[Profile]:
+    """The profiles of a graph by their nodes, or, without such a node, those that have none."""
+    profiles = all_profiles()
+    with_node = [profile for profile in profiles if profile.node and f"/{profile.node}" in nodes]
+    return with_node or [profile for profile in profiles if not profile.node]
 
 
 def named(name: str) -> Profile:

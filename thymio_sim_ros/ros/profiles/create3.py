@@ -390,6 +390,13 @@ PROFILE = Profile(
             "There is no dock: drive with navigate_to_position. A newer Create 3 has the action dock of the type Dock.",
             f"{_PACKAGE}/action/DockServo",
         ),
+        Missing("motion_control/", "The node of all robots is /motion_control, without the name of a robot."),
+        *(
+            Missing(
+                name, "This node of a Create 3 does not exist here; /motion_control and /simulator have parameters."
+            )
+            for name in ("mobility_monitor/", "robot_state/", "static_transform/", "ui_mgr/")
+        ),
     ),
     missing_parameters=(
         *(Missing(name, "The simulated robot has no reflexes: react to hazard_detection.") for name in _OF_REFLEXES),

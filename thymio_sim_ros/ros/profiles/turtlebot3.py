@@ -148,6 +148,15 @@ PROFILE = Profile(
     missing=(
         Missing("magnetic_field", "The simulated robot has no magnetometer: use the orientation of imu."),
         *(Missing(name, "The simulated robot has no camera.") for name in _OF_CAMERA),
+        *(
+            Missing(name, "This node of a TurtleBot3 does not exist here; /simulator has parameters.")
+            for name in (
+                "turtlebot3_node/",
+                "diff_drive_controller/",
+                "robot_state_publisher/",
+                "turtlebot3_diff_drive/",
+            )
+        ),
         Missing("/map", f"There is no SLAM in the simulator: {_NO_MAP}"),
         *(Missing(name, "Nav2 does not run here: use navigate_to_position, or start Nav2.") for name in _OF_NAV2),
         *(

@@ -191,7 +191,7 @@ class Connections:
         switched_off: Mapping[str, str] | None = None,
         *,
         beside: Sequence[Node] = (),
-        missing: Mapping[str, str] | None = None,
+        missing: Callable[[str], str] = lambda _name: "",
         actions: Callable[[], Mapping[str, str]] = dict,
     ) -> None:
         """Watch the endpoints of a node.
@@ -200,12 +200,12 @@ class Connections:
             node: The node.
             switched_off: Parameters by the topics that they would switch on, relative to a robot or the node.
             beside: Other nodes whose endpoints count as those of the node.
-            missing: Sentences by names of topics, services and actions that do not exist on purpose: relative to a
-                robot, or full with a slash at the start.
+            missing: Says why a topic, service or action does not exist on purpose, by its full name; empty for any
+                other one.
             actions: Returns the types of the actions that the nodes serve, by their full names.
         """
         self._node, self._own_nodes = node, (node, *beside)
-        self._switched_off, self._missing, self._actions = switched_off or {}, missing or {}, actions
+        self._switched_off, self._missing, self._actions = switched_off or {}, missing, actions
         self._own: dict[Side, _OwnNames] = {}
         self._misfits: dict[_Endpoint, Unconnected | None] = {}
         """Endpoints with name and type of ours, with the fault of their QoS."""
@@ -310,15 +310,8 @@ class Connections:
         """Whether a name that is not ours could mean one of ours."""
         return bool(
             self._parameter_of(endpoint)
-            or self._reason_of(endpoint)
+            or self._missing(endpoint.topic)
             or self._own_names(endpoint.query).meant(endpoint.topic, endpoint.type)
-        )
-
-    def _reason_of(self, endpoint: _Endpoint) -> str:
-        """Return why there is no peer for a name on purpose; empty if that is not the reason."""
-        name = endpoint.topic
-        return next(
-            (why for of, why in self._missing.items() if name == of or (of[0] != "/" and name.endswith(f"/{of}"))), ""
         )
 
     def _parameter_of(self, endpoint: _Endpoint) -> str:
@@ -330,7 +323,7 @@ class Connections:
     def _wrong_name(self, endpoint: _Endpoint) -> Unconnected:
         side, names = endpoint.query.side, self._own_names(endpoint.query)
         meant = names.meant(endpoint.topic, endpoint.type)
-        if reason := self._reason_of(endpoint):
+        if reason := self._missing(endpoint.topic):
             return Unconnected(endpoint.topic, endpoint.full_node, side, endpoint.type, f"no {side.name}", reason)
         if parameter := self._parameter_of(endpoint):
             cure = f"It is switched off: start the simulator with {_argument(f'{parameter}:=true')}"

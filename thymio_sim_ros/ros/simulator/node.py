@@ -126,7 +126,7 @@ class Simulator:
             self.node,
             values.switched_off,
             beside=self._profile.nodes,
-            missing=self._profile.missing,
+            missing=self._profile.profile.missing_name,
             actions=self._profile.actions,
         )
         self.runner = WorldRunner(

@@ -111,11 +111,6 @@ class ProfileHost:
         own = (self.node,) if self._has_node else ()
         return own if self._second is self.node else (*own, self._second)
 
-    @property
-    def missing(self) -> Mapping[str, str]:
-        """Names that the other robot has and this one has not, with the reason."""
-        return {missing.name: missing.reason for missing in self.profile.missing}
-
     def actions(self) -> Mapping[str, str]:
         """Return the types of the actions of all robots, by their full names."""
         rows = self.profile.actions
