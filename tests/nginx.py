@@ -50,7 +50,7 @@ class Nginx:
         if nginx is None or shutil.which("openssl") is None:
             pytest.skip("nginx or openssl is not installed")
         self.port = free_port()
-        self._log = folder / "access.log"
+        self._log, self._whole_log = folder / "access.log", folder / "whole.log"
         folder.mkdir()
         server = _documented(folder, self.port, port)
         if not passes_upgrade:
@@ -72,8 +72,13 @@ class Nginx:
 
     @property
     def log(self) -> str:
-        """The requests."""
+        """The requests, as the documented configuration logs them."""
         return self._log.read_text()
+
+    @property
+    def whole_log(self) -> str:
+        """The requests with their queries, as nginx and other proxies log them by default."""
+        return self._whole_log.read_text()
 
     def end(self) -> None:
         """End it."""
@@ -90,7 +95,7 @@ def _documented(folder: Path, listen: int, port: int) -> str:
         "127.0.0.1:8100": f"127.0.0.1:{port}",
         "/etc/ssl/certs/school.pem": f"{folder}/certificate.pem",
         "/etc/ssl/private/school.key": f"{folder}/key.pem",
-        "/var/log/nginx/thymio.log": f"{folder}/access.log",
+        "/var/log/nginx/thymio.log thymio;": f"{folder}/access.log thymio; access_log {folder}/whole.log combined;",
     }
     text = match[1]
     for documented, used in files.items():

@@ -92,12 +92,15 @@ def test_a_token_decides_for_pages_and_names_from_anywhere() -> None:
     assert check.is_allowed_page(visitor(foreign))
 
 
-def test_the_token_of_the_address_comes_before_that_of_the_header() -> None:
+def test_the_token_of_a_page_comes_before_that_of_the_header() -> None:
     given = {"Authorization": "Bearer fulltoken"}
+    offered = {"Sec-WebSocket-Protocol": "foxglove.sdk.v1, token.looktoken"}
+    assert role_of(check_of(WITH_TOKEN), visitor(offered)) is Role.READ_ONLY
     assert role_of(check_of(WITH_TOKEN), visitor(given, "/?token=looktoken")) is Role.READ_ONLY
-    in_header = check_of(replace(WITH_TOKEN, has_token_in_address=False))
+    in_header = check_of(replace(WITH_TOKEN, allows_page_token=False))
     assert role_of(in_header, visitor(given, "/?token=looktoken")) is Role.FULL
     assert role_of(in_header, visitor({}, "/?token=fulltoken")) == 401
+    assert role_of(in_header, visitor(offered)) == 401
 
 
 def test_the_reason_says_whether_a_token_is_missing_or_wrong() -> None:

@@ -111,7 +111,24 @@ def test_a_token_is_found_in_the_address_and_in_a_header(
     target: str, authorizations: list[str], tokens: tuple[str | None, str | None]
 ) -> None:
     visitor = NO_PROXIES.visitor(PUPIL, headers({"Authorization": authorizations}), target=target)
-    assert (visitor.query_token, visitor.bearer_token) == tokens
+    assert (visitor.page_token, visitor.bearer_token) == tokens
+    assert "abcd" not in repr(visitor)
+
+
+@pytest.mark.parametrize(
+    ("target", "offers", "token"),
+    [
+        ("/", "foxglove.sdk.v1, token.ab.c~d-", "ab.c~d-"),
+        ("/", ["foxglove.sdk.v1", " token.abcd"], "abcd"),
+        ("/?token=abcd", "token.other", "abcd"),
+        ("/", "token.a%28b+c", "a(b c"),
+        ("/", "token.", None),
+        ("/", "token, x.token.abcd", None),
+    ],
+)
+def test_a_token_is_found_in_a_sub_protocol(target: str, offers: str | list[str], token: str | None) -> None:
+    visitor = NO_PROXIES.visitor(PUPIL, headers({"Sec-WebSocket-Protocol": offers}), target=target)
+    assert visitor.page_token == token
     assert "abcd" not in repr(visitor)
 
 

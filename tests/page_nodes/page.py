@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
 
 from tests.patience import PATIENCE_S
 
@@ -21,9 +22,10 @@ class Page:
     ):
         name, _, path = where.partition("/")
         host = f"{name}:{port}"
-        query = f"?token={token}" if token else ""
+        offered = [Subprotocol("page-node"), *([Subprotocol(f"token.{token}")] if token else [])]
         self._connecting = connect(
-            f"ws://{host}/{path}page-node{query}",
+            f"ws://{host}/{path}page-node",
+            subprotocols=offered,
             origin=f"http://{host}" if origin is None else origin,  # type: ignore[arg-type]  # a str by another name
             additional_headers=headers,
             open_timeout=PATIENCE_S,

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { storageOrMap } from "../../web_ui/browser/local_storage.js";
 import { Session } from "../../web_ui/protocol/session.js";
 import { INITIAL, reduce } from "../../web_ui/state/index.js";
-import { resolveToken, tokenIn, withoutToken } from "../../web_ui/browser/access_token.js";
+import { resolveToken, tokenIn, tokenProtocols, withoutToken } from "../../web_ui/browser/access_token.js";
 
 const ADDRESS = "http://10.1.2.3:8080/";
 
@@ -29,6 +29,12 @@ for (const [rest, token, clean] of /** @type {[string, string | null, string][]}
     assert.equal(withoutToken(ADDRESS + rest), ADDRESS + clean);
   });
 }
+
+test("a sub-protocol has the token in letters that sub-protocols may have", () => {
+  assert.deepEqual(tokenProtocols(""), []);
+  assert.deepEqual(tokenProtocols("aB3.c_d-"), ["token.aB3.c_d-"]);
+  assert.match(tokenProtocols("~ (a,b)=\ud800;é")[0], /^token\.[A-Za-z0-9.+%_-]+$/);
+});
 
 test("the token is removed from the address and is available after a reload", () => {
   const tab = storage();

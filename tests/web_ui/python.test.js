@@ -67,8 +67,8 @@ function newClient(token = "") {
       if (address.pathname !== "/p/anna/page-node.json") throw new Error(address.href);
       return { json: async () => ({ right: headers.Authorization ?? "local", may_run: true }) };
     }),
-    open: (address) => {
-      const socket = { address, sent: /** @type {any[]} */ ([]), isClosed: false };
+    open: (address, protocols) => {
+      const socket = { address, protocols, sent: /** @type {any[]} */ ([]), isClosed: false };
       const api = { send: (/** @type {string} */ text) => socket.sent.push(JSON.parse(text)), close: () => (socket.isClosed = true) };
       sockets.push(Object.assign(socket, api));
       return /** @type {any} */ (socket);
@@ -85,7 +85,8 @@ test("a program begins when all is ready, and what has to be before it is done",
   const { client, sockets, say } = newClient("secret");
   let isPrepared = false;
   client.run(PROGRAM, async () => (isPrepared = true));
-  assert.equal(sockets[0].address, "wss://school.example/p/anna/page-node?token=secret");
+  assert.equal(sockets[0].address, "wss://school.example/p/anna/page-node");
+  assert.deepEqual(sockets[0].protocols, ["page-node", "token.secret"]);
   sockets[0].onopen();
   assert.deepEqual(sockets[0].sent, [{ op: "run", ...PROGRAM }]);
   assert.equal(client.state, "starting");

@@ -57,8 +57,8 @@ class AccessRules:
     """Additional host names, in lower case."""
     allowed_origins: tuple[str, ...] = ()
     """Additional origins of web pages; `*` allows all."""
-    has_token_in_address: bool = True
-    """Whether a token counts in `?token=` of the address, and not only in the header Authorization."""
+    allows_page_token: bool = True
+    """Whether a token counts in the address or in a sub-protocol, and not only in the header Authorization."""
     token_hint: str = ""
     """The text sent to a client without a valid token; empty: that tokens are in the simulator's terminal."""
 
@@ -121,8 +121,8 @@ class AccessCheck:
     async def role(self, visitor: Visitor) -> Role:
         """The role that the token of a request gives. Raises RefusedError without a valid one."""
         given = visitor.bearer_token
-        if self.rules.has_token_in_address and visitor.query_token is not None:
-            given = visitor.query_token
+        if self.rules.allows_page_token and visitor.page_token is not None:
+            given = visitor.page_token
         role = await self.role_of(given, visitor)
         if role is None:
             self._report("token", f"request from {visitor.address} rejected: its token is wrong or missing")

@@ -56,8 +56,9 @@ class Visitor:
     """That of the web page which makes the request; None for a program, and for links and pictures."""
     is_from_link: bool = False
     """Whether the browser says that a page of another site has caused the request."""
-    query_token: str | None = field(default=None, repr=False)
-    """The token in `?token=` of the address."""
+    page_token: str | None = field(default=None, repr=False)
+    """The token that also pages can send which may set no header: in `?token=` of the address or, of a WebSocket, in a
+    sub-protocol `token.…`. Proxies log addresses, and no sub-protocols."""
     bearer_token: str | None = field(default=None, repr=False)
     """The token in `Authorization: Bearer`, a header that no foreign page can send."""
 
@@ -103,7 +104,7 @@ class TrustedProxies:
             origin=_readable(origins[-1]) if origins else None,
             is_forwarded=any(map(values, _OF_PROXIES)),
             is_from_link=_last(values("Sec-Fetch-Site")).lower() == "cross-site",
-            query_token=_query_token(target),
+            page_token=_page_token(target.partition("?")[2], values("Sec-WebSocket-Protocol")),
             bearer_token=_bearer_token(values("Authorization")),
         )
         if not self._is_trusted(_address(peer)):
@@ -160,9 +161,14 @@ def _address(text: str) -> Address | None:
     return None
 
 
-def _query_token(target: str) -> str | None:
-    found = urllib.parse.parse_qs(target.partition("?")[2], errors="replace").get("token")
-    return found[-1] if found else None
+def _page_token(query: str, offers: Iterable[str]) -> str | None:
+    names = (name.strip() for offer in offers for name in offer.split(","))
+    # A sub-protocol has the form of the query with a dot in place of `=`, which none may contain.
+    for text in (query, *(name.replace(".", "=", 1) for name in names if name.startswith("token."))):
+        found = urllib.parse.parse_qs(text, errors="replace").get("token")
+        if found:
+            return found[-1]
+    return None
 
 
 def _bearer_token(authorizations: Iterable[str]) -> str | None:

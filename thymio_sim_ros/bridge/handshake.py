@@ -1,7 +1,8 @@
-"""The sub-protocol of a handshake: Foxglove's, or none for rosbridge."""
+"""The sub-protocol of a handshake."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from http import HTTPStatus
 from typing import TYPE_CHECKING
 
@@ -17,16 +18,15 @@ WRONG_TOKEN = 4401
 """Close code for a page without a valid token: browsers hide the reason of a rejected handshake from pages."""
 
 
-def select_subprotocol(request: BaseRequest) -> str | None:
-    """The first of `SUBPROTOCOLS` that a client offers; None if it offers nothing, as clients of rosbridge do.
+def select_subprotocol(request: BaseRequest, known: Sequence[str] = SUBPROTOCOLS) -> str | None:
+    """The first of the known sub-protocols that a client offers; None if it offers nothing, as clients of rosbridge do.
 
-    Raises RefusedError if it offers others only.
+    Raises RefusedError if it offers others only: browsers end a connection without one that they have offered.
     """
     offered = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
     if not any(offered):
         return None
-    for name in SUBPROTOCOLS:
+    for name in known:
         if name in offered:
             return name
-    names = ", ".join(SUBPROTOCOLS)
-    raise RefusedError(HTTPStatus.BAD_REQUEST, f"offer one of the sub-protocols {names}, or none for rosbridge")
+    raise RefusedError(HTTPStatus.BAD_REQUEST, f"offer one of the sub-protocols {', '.join(known)}, or none")

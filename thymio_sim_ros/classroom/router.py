@@ -109,9 +109,9 @@ class Router:
 
 
 def _check(token: str, what: str, report: Report) -> AccessCheck:
-    """Lets in who has a token. It counts in a header only, which no foreign page can send."""
+    """Lets in who has a token. It counts in the header Authorization only, which no foreign page can send."""
     hint = f"expected the {what}: Authorization: Bearer …"
-    return AccessCheck(AccessRules(Tokens(token), has_token_in_address=False, token_hint=hint), report)
+    return AccessCheck(AccessRules(Tokens(token), allows_page_token=False, token_hint=hint), report)
 
 
 def _names(path: str) -> Sequence[str]:

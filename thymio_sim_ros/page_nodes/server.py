@@ -23,6 +23,7 @@ from typing import Any
 from aiohttp import WSMsgType, web
 
 from thymio_sim_ros.access import AccessCheck, RefusedError, Visitor
+from thymio_sim_ros.bridge.handshake import select_subprotocol
 from thymio_sim_ros.page_nodes.process import ISOLATED, LEVELS, NodeProcess
 from thymio_sim_ros.page_nodes.program import MAX_BYTES, NodeProgram, ProgramRefusedError, program_of
 from thymio_sim_ros.page_nodes.same_user import is_same_user
@@ -33,6 +34,8 @@ __all__ = ["NodeServer"]
 
 MAX_NODES = 8
 """Nodes that run at the same time."""
+_SUBPROTOCOL = "page-node"
+"""What a page offers beside its token, as a browser accepts no connection without one of its sub-protocols."""
 _HEARTBEAT_S = 20.0
 _CLOSE_S = 1.0
 """Longest time that `close` waits for each node, and for the closing handshake of a page."""
@@ -63,11 +66,16 @@ class NodeServer:
     async def handle(self, request: web.BaseRequest, visitor: Visitor) -> web.StreamResponse:
         """Serve a page until it disconnects. Raises RefusedError for one that may not run nodes."""
         check_page(visitor)
+        protocol = select_subprotocol(request, (_SUBPROTOCOL,))
         right = await self._right(request, visitor)
         if not right.may_run:
             raise RefusedError(403, f"this visitor may not run nodes: {right.value}; see --nodes in SECURITY.md")
         socket = web.WebSocketResponse(
-            heartbeat=_HEARTBEAT_S, compress=False, max_msg_size=_JSON_FACTOR * MAX_BYTES, timeout=_CLOSE_S
+            heartbeat=_HEARTBEAT_S,
+            compress=False,
+            max_msg_size=_JSON_FACTOR * MAX_BYTES,
+            timeout=_CLOSE_S,
+            protocols=() if protocol is None else (protocol,),
         )
         await socket.prepare(request)
         transport = request.transport

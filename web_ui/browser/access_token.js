@@ -23,6 +23,17 @@ export function withoutToken(address) {
 }
 
 /**
+ * The sub-protocol by which a WebSocket passes the token on (thymio_sim_ros/access/visitor.py), none without a token. A
+ * browser sets no headers of a WebSocket, and proxies log addresses. It is offered last: jupyter-server-proxy accepts the
+ * first sub-protocol, whatever its server accepts.
+ *
+ * @param {string} token
+ */
+export function tokenProtocols(token) {
+  return token === "" ? [] : [String(new URLSearchParams({ [KEY]: token })).replace("=", ".")];
+}
+
+/**
  * The token to use: the one in the address, else the stored one; "" if there is none.
  *
  * @param {KeyValueStore} storage    session storage of this tab

@@ -4,6 +4,7 @@
 // Browsers do not say why a WebSocket does not open. If the server of the page answers all the while, several times, it
 // is something in between that passes HTTP only, such as a proxy without the upgrade.
 
+import { tokenProtocols } from "../browser/access_token.js";
 import { Session, SUBPROTOCOLS } from "./session.js";
 
 /** @typedef {import("./session.js").SessionEvent} SessionEvent */
@@ -49,8 +50,7 @@ export class Client {
   /** Connect, and keep connecting for as long as the page is open. */
   start() {
     this.emit({ type: "connecting", address: this.address });
-    const query = this.token === "" ? "" : `?token=${encodeURIComponent(this.token)}`;
-    const socket = new WebSocket(this.address + query, SUBPROTOCOLS);
+    const socket = new WebSocket(this.address, [...SUBPROTOCOLS, ...tokenProtocols(this.token)]);
     socket.binaryType = "arraybuffer";
     socket.addEventListener("open", () => {
       this.blocked = 0;

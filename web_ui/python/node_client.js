@@ -1,9 +1,12 @@
 // A ROS node that the suite runs for this page: a WebSocket beside that of the bridge (thymio_sim_ros/page_nodes/server.py).
 // No DOM.
 
+import { tokenProtocols } from "../browser/access_token.js";
+
 /** Characters of the output that are kept: its end. */
 const MOST_OUTPUT = 60_000;
 const PERMISSION = "page-node.json";
+/** Path and sub-protocol. */
 const SOCKET = "page-node";
 
 /** @typedef {{ name: string, text: string, namespace: string, sim_time: boolean }} NodeProgram   sim_time: its time is simulated */
@@ -39,9 +42,15 @@ export class NodeClient {
    * @param {string} options.token    "" for none
    * @param {() => void} options.changed
    * @param {typeof fetch} [options.load]
-   * @param {(address: string) => Socket} [options.open]
+   * @param {(address: string, protocols: string[]) => Socket} [options.open]
    */
-  constructor({ page, token, changed, load = fetch.bind(globalThis), open = (address) => new WebSocket(address) }) {
+  constructor({
+    page,
+    token,
+    changed,
+    load = fetch.bind(globalThis),
+    open = (address, protocols) => new WebSocket(address, protocols),
+  }) {
     this.page = page;
     this.token = token;
     this.changed = changed;
@@ -90,8 +99,7 @@ export class NodeClient {
     this.state = "starting";
     const address = new URL(SOCKET, this.page);
     address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
-    if (this.token !== "") address.searchParams.set("token", this.token);
-    const socket = this.open(address.href);
+    const socket = this.open(address.href, [SOCKET, ...tokenProtocols(this.token)]);
     this.#socket = socket;
     socket.onopen = () => socket.send(JSON.stringify({ op: "run", ...program }));
     socket.onmessage = (/** @type {{ data: string }} */ { data }) => this.#receive(socket, JSON.parse(data));
