@@ -32,7 +32,7 @@ def test_the_cells_of_the_page_on_jupyter_drive_the_robot() -> None:
     assert done.returncode == 0, done.stderr
     moved, _, view = done.stdout.splitlines()[-1].partition(" ")
     assert float(moved) > 0.02
-    assert "/?token=" in view
+    assert "/#token=" in view
 
 
 def test_arguments_that_the_suite_refuses_are_said_and_nothing_remains() -> None:

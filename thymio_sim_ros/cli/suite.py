@@ -92,7 +92,9 @@ def run(argv: Sequence[str]) -> int:
             print_text(notice)
         from thymio_sim_ros.ros import combined
 
-        return combined.run(suite, of_ros, on_ready=lambda: _print_banner(suite, robots, servers.lines))
+        return combined.run(
+            suite, of_ros, on_ready=lambda: None if options.quiet else _print_banner(suite, robots, servers.lines)
+        )
     finally:
         shm_cleanup.remove_new(before)
 
@@ -270,6 +272,11 @@ def _parser() -> argparse.ArgumentParser:
         f"{describe_lidar(Lidar())})",
     )
     add_graph_options(parser)
+    parser.add_argument(
+        "--quiet",
+        action="store_true",
+        help="print no addresses: they have tokens, which do not belong in the log of a service",
+    )
     parser.add_argument("--version", action="version", version=f"thymio-sim {thymio_sim_ros.__version__}")
     return parser
 

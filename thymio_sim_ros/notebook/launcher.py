@@ -16,12 +16,13 @@ ARGUMENTS = (
     "--no-foxglove-port",
     "--no-aseba",
     "--no-tdm-ports",
+    "--quiet",
     "--trusted-proxy",
     "127.0.0.1",
     "--trusted-proxy",
     "::1",
 )
-"""Options of a suite behind jupyter-server-proxy: its page's port is the only one."""
+"""Options of a suite behind jupyter-server-proxy: its page's port is the only one, its output is Jupyter's log."""
 
 _BINDER = "BINDER_LAUNCH_HOST"
 """Variable of a container that Binder has started for one user, whose address has no token (`.binder/`)."""
@@ -34,7 +35,7 @@ def launcher() -> dict[str, Any]:
     """Return how jupyter-server-proxy starts the suite at its first request, and the tile.
 
     On a computer with several users, everyone can connect to each port. The suite therefore has a token, which only the
-    tile of its user knows.
+    tile of its user knows. It is in the fragment of the address, because jupyter-server-proxy logs queries.
 
     Source: jupyter-server-proxy.readthedocs.io, "Server Process options".
     """
@@ -46,5 +47,5 @@ def launcher() -> dict[str, Any]:
         "environment": {TOKEN_VARIABLE: token} if token else {},
         "timeout": START_S,
         "new_browser_tab": True,
-        "launcher_entry": {"title": "Thymio", "path_info": f"thymio/?token={token}" if token else "thymio/", **icon},
+        "launcher_entry": {"title": "Thymio", "path_info": f"thymio/#token={token}" if token else "thymio/", **icon},
     }

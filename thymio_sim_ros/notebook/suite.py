@@ -81,7 +81,7 @@ class Suite:
         """Address of the page with its token; through Jupyter's own server if that has jupyter-server-proxy."""
         base = _proxy_base()
         place = f"http://127.0.0.1:{self.port}/" if base is None else f"{base}proxy/{self.port}/"
-        return f"{place}?token={self._token}"
+        return f"{place}#token={self._token}"
 
     def view(self, height: int = 600) -> View:
         """Show the page below the cell, `height` in pixels."""
