@@ -11,8 +11,9 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import wait_for_port
-from tests.web_ui.page_support import MARKS, drop_file, open_page, resize
+from tests.web_ui.page_support import MARKS, drop_file, open_page, resize, wait_for_none
 from tests.web_ui.test_page_access import AXE, findings
+from tests.web_ui.test_page_view import NO_WEBGL
 from tests.web_ui.test_welcome import visit
 from thymio_sim_ros.missions.shipped import shipped
 
@@ -21,6 +22,13 @@ pytestmark = MARKS
 MISSIONS = [each for step in shipped() for each in step.missions]
 CARD = ".mission-card"
 PASSED = f"{CARD}[data-state=passed]"
+OVER_THE_CARD = """() => {
+  const card = document.querySelector('.mission-card').getBoundingClientRect();
+  return ['.views', '#trouble', '.notice', '#tray'].filter((selector) => {
+    const {left, right, top, bottom, height} = document.querySelector(selector)?.getBoundingClientRect() ?? {height: 0};
+    return height > 0 && left < card.right && right > card.left && top < card.bottom && bottom > card.top;
+  });
+}"""
 
 
 def code_of(path: str) -> str:
@@ -154,6 +162,28 @@ def test_only_the_languages_of_the_mission_are_offered_and_own_work_stays(world,
     notice.locator("summary").click()
     playwright.expect(notice).to_contain_text("mine.json: success: found 'fat', expected a fact: 'far'")
     assert page.locator(CARD).is_visible()
+
+
+def test_nothing_lies_over_the_card_of_a_mission(world, own_page, tmp_path):
+    page = own_page
+    page.add_init_script(NO_WEBGL)
+    open_page(page, world("base", "none"))
+    page.locator("#missions-open").click()
+    choose(page, "forward")
+    note = page.locator("#trouble")
+    for width, height in ((1024, 768), (844, 390), (390, 844)):
+        resize(page, width, height)
+        wait_for_none(page, OVER_THE_CARD)
+        assert note.is_visible() == (width > 400), "beside it if there is room"
+    page.locator("#mission-fold").click()
+    note.wait_for()
+    wait_for_none(page, OVER_THE_CARD)
+    page.locator("#mission-fold").click()
+    refused = tmp_path / "refused.json"
+    refused.write_text(json.dumps({"format": 1, "facts": {}, "success": "far"}))
+    drop_file(page, refused, "#view")
+    page.locator(".notice.error").wait_for()
+    wait_for_none(page, OVER_THE_CARD)
 
 
 @pytest.mark.slow
