@@ -128,7 +128,8 @@ def test_a_try_that_fails_says_what_was_missing_and_helps(world, page):
     page.locator("[data-mission-do=again]").click()
     page.locator(f"{CARD}[data-state=running]").wait_for()
     page.locator(".mission-task summary").click()
-    page.locator("[data-mission-do=leave]").click()
+    page.locator(f"{CARD}[data-state=failed]").wait_for()
+    page.locator("[data-mission-do=leave]").click()  # the task stays open, though the try has ended meanwhile
     page.locator(CARD).wait_for(state="detached")
     assert page.evaluate("window.thymio.state().missionMarkers") == []
 

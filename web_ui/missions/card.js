@@ -121,7 +121,7 @@ export class MissionCard {
     }
     if (attempt !== null && attempt.state !== this.#state) {
       if (attempt.state === "passed" || attempt.state === "failed") this.#folded = null; // what became of it is shown
-      this.#isTaskOpen = null;
+      else this.#isTaskOpen = null;
       this.#state = attempt.state;
     }
     const seconds = attempt?.state === "running" ? state.timeNs / NS_PER_S : (attempt?.at_s ?? 0);
