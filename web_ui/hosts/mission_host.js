@@ -137,7 +137,7 @@ export class MissionHost {
     this.#context?.program.node?.leave();
     this.#document = "";
     this.#noted = "";
-    const kept = this.progress.language(mission.name);
+    const kept = this.progress.language(mission.name) ?? this.#language; // or that of the mission before
     const wanted = mission.languages.length === 1 ? mission.languages[0] : kept;
     this.#language = null;
     this.#context?.program.redraw();

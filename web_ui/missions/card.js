@@ -57,6 +57,7 @@ export class MissionCard {
   #key = "";
   #said = "";
   /** @type {boolean | null} null: by the room that there is */ #folded = null;
+  /** Whether the pupil has gone on from the task to a program. */ #isRead = false;
   /** @type {boolean | null} null: open until a try runs */ #isTaskOpen = null;
   #hints = 0;
   /** The next step, in words. */ #step = "";
@@ -118,8 +119,10 @@ export class MissionCard {
       this.#hints = 0;
       this.#step = "";
       this.#folded = null;
+      this.#isRead = false;
     }
     if (attempt !== null && attempt.state !== this.#state) {
+      if (attempt.state === "running") this.#isRead = true;
       if (attempt.state === "passed" || attempt.state === "failed") this.#folded = null; // what became of it is shown
       else this.#isTaskOpen = null;
       this.#state = attempt.state;
@@ -148,7 +151,7 @@ export class MissionCard {
   #fold(attempt) {
     const { frame } = this.context;
     const isTight = frame.layout === "phone" || (frame.layout === "single" && document.body.dataset.work === "open");
-    const isNews = attempt?.state === "passed" || attempt?.state === "failed" || this.language() === null;
+    const isNews = attempt?.state === "passed" || attempt?.state === "failed" || !this.#isRead;
     const isFolded = this.#folded ?? (isTight && !isNews);
     this.element.toggleAttribute("data-folded", isFolded);
     setAttribute(this.fold, "aria-expanded", String(!isFolded));
@@ -247,7 +250,11 @@ export class MissionCard {
           class: "btn line",
           "data-mission-language": id,
           "aria-pressed": String(id === chosen),
-          onclick: () => this.commands.program(id),
+          onclick: () => {
+            this.#folded = null;
+            this.#isRead = true;
+            this.commands.program(id);
+          },
         },
         t(`with.${id}`),
       ),
