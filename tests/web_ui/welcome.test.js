@@ -31,6 +31,7 @@ test("they need a robot, a connection that may write, and the running world in t
   assert.equal(canStart({ ...state, identified: false }, false), false); // whether it may write is not known yet
   assert.equal(canStart({ ...state, readOnly: true }, false), false);
   assert.equal(canStart({ ...state, robots: {} }, false), false);
+  assert.equal(canStart({ ...state, mission: /** @type {any} */ ({ name: "forward" }) }, false), false); // its card is there
 });
 
 test("the tour is not offered over an open tab or a mission", () => {

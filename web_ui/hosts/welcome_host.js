@@ -27,13 +27,14 @@ export function isFirstVisit({ wanted, storage, entry }) {
 }
 
 /**
- * Whether the four starts can be shown now: they act on a robot, and lie over the scene.
+ * Whether the four starts can be shown now: they act on a robot, and lie over the scene and the card of a mission.
  *
- * @param {Pick<State, "connection" | "identified" | "readOnly" | "robots">} state
+ * @param {Pick<State, "connection" | "identified" | "readOnly" | "robots" | "mission">} state
  * @param {boolean} isBuilding   whether the creator shows its own playground
  */
-export function canStart({ connection, identified, readOnly, robots }, isBuilding) {
-  return connection === "connected" && identified && !readOnly && Object.keys(robots).length > 0 && !isBuilding;
+export function canStart({ connection, identified, readOnly, robots, mission }, isBuilding) {
+  const isFree = mission === null && !isBuilding;
+  return connection === "connected" && identified && !readOnly && Object.keys(robots).length > 0 && isFree;
 }
 
 /**
