@@ -11,7 +11,7 @@ import pytest
 playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.processes import wait_for_port
-from tests.web_ui.page_support import MARKS, drop_file, open_page, resize, wait_for_none
+from tests.web_ui.page_support import MARKS, build_playground, drop_file, open_page, resize, wait_for_none
 from tests.web_ui.test_page_access import AXE, findings
 from tests.web_ui.test_page_view import NO_WEBGL
 from tests.web_ui.test_welcome import visit
@@ -223,3 +223,11 @@ def test_all_parts_of_missions_are_accessible(world, page, size):
     page.evaluate("document.querySelector('[data-verb=run]').click()")
     page.locator(".python-error").wait_for()
     assert findings(page) == [], "a node with a mistake"
+    build_playground(page)
+    page.locator(".mission-form summary").first.click()
+    page.locator("[data-verb=make-mission]").click()
+    for part in ("goals", "never", "happens", "extra"):
+        page.locator(f"[data-verb=add-{part}]").click()
+        page.locator(f"[data-goal='{part}[0]']").wait_for()
+    page.locator(".by-hand summary").click()
+    assert findings(page) == [], "made in the creator"
