@@ -232,7 +232,6 @@ def test_a_file_is_decoded_as_declared_and_saved_in_utf_8(editor, tmp_path):
 
 FOREIGN = (
     ("lesson.vpl3", b'{"advanced": false, "program": [{"blocks": []}]}', "this is a program of VPL 3"),
-    ("robot.py", b"import rclpy\n", "this is a ROS node"),
     ("homework.docx", b"PK\x03\x04\x14\0 word/document.xml", "this is a document of an office program"),
     ("photo.txt", b"\x89PNG\r\n\x1a\n", "this is a picture"),
     ("old.sb2", b"PK\x03\x04\x14\0 project.json", "this is a Scratch project"),

@@ -225,7 +225,7 @@ def test_the_focus_is_not_lost_with_what_had_it(world, page, tmp_path):
     go_to(page, "#help-open", "Shift+Tab")
     page.keyboard.press("Enter")
     page.locator("[role=menuitem]:focus").wait_for()
-    for _ in range(2):
+    for _ in range(3):
         page.keyboard.press("ArrowDown")
     playwright.expect(page.get_by_role("menuitem", name="Keys")).to_be_focused()
     page.keyboard.press("Enter")
