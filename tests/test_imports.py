@@ -70,7 +70,7 @@ RULES = {
     f"{OURS}.web": Rule(
         _names("access", "web", "bridge", "files.playground_index", "files.resources", "sim"), frozenset({"aiohttp"})
     ),
-    f"{OURS}.page_nodes": Rule(_names("access", "page_nodes", "web"), frozenset({"aiohttp"})),
+    f"{OURS}.page_nodes": Rule(_names("access", "bridge.handshake", "page_nodes", "web"), frozenset({"aiohttp"})),
     f"{OURS}.network": Rule(
         _names("access", "aseba_vm", "bridge", "device.programs", "names.addresses", "network", "web"),
         frozenset({"aiohttp", "serial", "zeroconf"}),
