@@ -22,7 +22,7 @@ from thymio_sim_ros.bridge.protocol import wire
 from thymio_sim_ros.bridge.protocol.constants import StatusLevel
 from thymio_sim_ros.bridge.switchboard import events as ev
 from thymio_sim_ros.bridge.switchboard.switchboard import Switchboard
-from thymio_sim_ros.web import ServerThread
+from thymio_sim_ros.web.thread import MAX_OWN, ServerThread
 
 pytestmark = pytest.mark.process
 
@@ -83,6 +83,25 @@ def test_a_client_may_connect_by_ipv6() -> None:
     with connect(f"ws://[::1]:{server.port}", subprotocols=SUBPROTOCOLS) as client:
         assert isinstance(wire.decode_server(client.recv(timeout=PATIENCE_S)), ms.ServerInfo)
         assert server.bridge.client_count == 1
+    server.close()
+
+
+def test_a_process_of_this_program_gets_a_connection_without_a_port() -> None:
+    server, _ = start()
+    link = server.thread.connect_own()
+    with connect("ws://localhost", sock=link, subprotocols=SUBPROTOCOLS, proxy=None) as client:
+        assert isinstance(wire.decode_server(client.recv(timeout=PATIENCE_S)), ms.ServerInfo)
+        assert server.bridge.client_count == 1
+    server.close()
+
+
+def test_such_connections_beyond_their_limit_are_closed() -> None:
+    server, _ = start()
+    links = [server.thread.connect_own() for _ in range(MAX_OWN + 1)]
+    links[-1].settimeout(PATIENCE_S)
+    assert links[-1].recv(1) == b""
+    for link in links:
+        link.close()
     server.close()
 
 

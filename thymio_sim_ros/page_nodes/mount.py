@@ -23,17 +23,16 @@ SOCKET_PATH, PERMISSION_PATH = "/page-node", "/page-node.json"
 def mount(thread: ServerThread, access: AccessCheck, who: Who) -> None:
     """Run the nodes of pages in the thread of all servers. `access`: the check of the bridge."""
 
-    @cache
-    def port() -> int:
-        """A port that only nodes use: without TLS, as they do not know the name in the certificate, and without time
-        limits, because a node is connected before its interpreter has started."""
-        return thread.listen_for_own()
+    # Nodes have connections of their own: without TLS, as they do not know the name in the certificate, and without
+    # time limits, because a node has its connection before its interpreter has started.
+    port = cache(thread.listen_for_own)
 
     @cache
     def server() -> NodeServer:
+        from thymio_sim_ros.page_nodes.process import ISOLATED
         from thymio_sim_ros.page_nodes.server import NodeServer
 
-        nodes = NodeServer(access, who, port=port)
+        nodes = NodeServer(access, who, thread.connect_own if ISOLATED else port)
         thread.at_close(nodes.close)
         return nodes
 

@@ -13,12 +13,13 @@ import sys
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from socket import socket
 from typing import Any
 
 import thymio_sim_ros
 from thymio_sim_ros.page_nodes.program import NodeProgram
 
-__all__ = ["ISOLATED", "LEVELS", "NodeProcess"]
+__all__ = ["ISOLATED", "LEVELS", "Connect", "NodeProcess"]
 
 ISOLATED = ("namespaces",) if sys.platform.startswith("linux") else ()
 """Levels of isolation (`grading.sandbox.levels`) for visitors of other computers: files and network of this one are
@@ -33,6 +34,10 @@ _END_S = 15.0
 """Time in which a supervisor ends its node before it is killed."""
 _UNAVAILABLE = "this computer gives no isolation for programs of others"
 
+Connect = Callable[[], "socket | int"]
+"""Gives each start of a node its way to the bridge, without TLS: one end of a connection, or, where a node can connect
+by itself, a port of loopback. Called in the thread of the node."""
+
 Report = Callable[[Mapping[str, Any]], object]
 """Called with each event of the supervisor, in the thread of the node; the last one is `ended`."""
 
@@ -41,14 +46,11 @@ class NodeProcess:
     """A node from its start to its end. All methods return at once, and may be called in any thread."""
 
     def __init__(
-        self, program: NodeProgram, levels: Sequence[str], report: Report, *, port: int, token: str = ""
+        self, program: NodeProgram, levels: Sequence[str], report: Report, connect: Connect, token: str = ""
     ) -> None:
-        """Start it at the first of these levels that the computer gives.
-
-        `port` of loopback has the bridge, without TLS; `token` is that of the bridge.
-        """
+        """Start it at the first of these levels that the computer gives. `token`: that of the bridge."""
         self._program, self._levels, self._report = program, tuple(levels), report
-        self._port, self._token = port, token
+        self._connect, self._token = connect, token
         self.level = ""
         """The level that was tried last."""
         self._process: subprocess.Popen[bytes] | None = None
@@ -127,21 +129,24 @@ class NodeProcess:
 
     def _start(self, level: str) -> subprocess.Popen[bytes] | None:
         program = self._program
-        job = {"level": level, "port": self._port, "token": self._token, "file": program.name, "text": program.text}
-        line = json.dumps({**job, "arguments": program.arguments}).encode() + b"\n"
-        with self._lock:
+        with self._lock, contextlib.ExitStack() as stack:
             if self._is_ending:
                 return None
+            way = self._connect()
+            port, link = (way, -1) if isinstance(way, int) else (0, stack.enter_context(way).fileno())
             process = self._process = subprocess.Popen(
                 [sys.executable, "-P", "-m", _SUPERVISOR],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 env=_environment(),
+                pass_fds=() if link < 0 else (link,),
             )
+        job = {"level": level, "port": port, "link": link, "token": self._token}
+        job |= {"file": program.name, "text": program.text, "arguments": program.arguments}
         assert process.stdin is not None
         with contextlib.suppress(OSError):  # `_run_at` finds its end
-            process.stdin.write(line)
+            process.stdin.write(json.dumps(job).encode() + b"\n")
             process.stdin.flush()
         return process
 

@@ -24,7 +24,7 @@ from aiohttp import WSMsgType, web
 
 from thymio_sim_ros.access import AccessCheck, RefusedError, Visitor
 from thymio_sim_ros.bridge.handshake import select_subprotocol
-from thymio_sim_ros.page_nodes.process import ISOLATED, LEVELS, NodeProcess
+from thymio_sim_ros.page_nodes.process import ISOLATED, LEVELS, Connect, NodeProcess
 from thymio_sim_ros.page_nodes.program import MAX_BYTES, NodeProgram, ProgramRefusedError, program_of
 from thymio_sim_ros.page_nodes.same_user import is_same_user
 from thymio_sim_ros.page_nodes.who import Right, Who, check_page, right_of
@@ -48,9 +48,9 @@ _JSON_FACTOR = 6
 class NodeServer:
     """Runs the nodes of pages. Only for the thread of the event loop."""
 
-    def __init__(self, access: AccessCheck, who: Who, *, port: Callable[[], int]) -> None:
-        """`access`: the check of the bridge; `port` gives the port of loopback that has the bridge, without TLS."""
-        self._access, self._who, self._port = access, who, port
+    def __init__(self, access: AccessCheck, who: Who, connect: Connect) -> None:
+        """`access`: the check of the bridge."""
+        self._access, self._who, self._connect = access, who, connect
         self._running: dict[str, _Page] = {}
         """By namespace of the robot."""
 
@@ -136,7 +136,7 @@ class NodeServer:
             return
         self._running[program.namespace] = page
         levels = LEVELS if right is Right.LOCAL else ISOLATED
-        page.start(program, levels, self._port(), self._access.rules.tokens.full, self._ended)
+        page.start(program, levels, self._connect, self._access.rules.tokens.full, self._ended)
 
     def _leave(self, page: _Page) -> None:
         """End the node of a page."""
@@ -157,7 +157,12 @@ class _Page:
         self.process: NodeProcess | None = None
 
     def start(
-        self, program: NodeProgram, levels: tuple[str, ...], port: int, token: str, ended: Callable[[_Page], None]
+        self,
+        program: NodeProgram,
+        levels: tuple[str, ...],
+        connect: Connect,
+        token: str,
+        ended: Callable[[_Page], None],
     ) -> None:
         """Start a node; `ended` is called in this thread when it has ended by itself."""
         loop = asyncio.get_running_loop()
@@ -177,7 +182,7 @@ class _Page:
                 asyncio.run_coroutine_threadsafe(pass_on(process, event), loop).result()
 
         started = threading.Event()
-        process = self.process = NodeProcess(program, levels, report, port=port, token=token)
+        process = self.process = NodeProcess(program, levels, report, connect, token)
         started.set()
 
     async def replace(self) -> None:

@@ -181,7 +181,6 @@ class _Acceptor:
 
     async def accept_forever(self, listener: socket, tls: ssl.SSLContext | None) -> None:
         """Accept the connections of a listening socket, until it is canceled."""
-        loop = asyncio.get_running_loop()
         listener.setblocking(False)
         listener.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)  # accepted sockets inherit it
         listener.listen(BACKLOG)
@@ -205,13 +204,17 @@ class _Acceptor:
             except asyncio.CancelledError:
                 accepted.close()
                 raise
-            slot = self._connections.add(str(peer[0]))
-            # In a task of its own: a handshake of TLS takes as long as the client wants.
-            task = loop.create_task(self._connect(slot, accepted, tls))
-            slot.close = task.cancel
-            self._connecting.add(task)
-            task.add_done_callback(self._connecting.discard)
+            self.add(accepted, str(peer[0]), tls)
             await asyncio.sleep(0)
+
+    def add(self, accepted: socket, address: str, tls: ssl.SSLContext | None) -> None:
+        """Serve a connected socket that does not block; only allowed while there are slots."""
+        slot = self._connections.add(address)
+        # In a task of its own: a handshake of TLS takes as long as the client wants.
+        task = asyncio.get_running_loop().create_task(self._connect(slot, accepted, tls))
+        slot.close = task.cancel
+        self._connecting.add(task)
+        task.add_done_callback(self._connecting.discard)
 
     async def _connect(self, slot: ConnectionSlot, accepted: socket, tls: ssl.SSLContext | None) -> None:
         loop = asyncio.get_running_loop()
@@ -292,6 +295,15 @@ class HttpConnections:
     def accept(self, listeners: Iterable[socket], tls: ssl.SSLContext | None = None) -> None:
         """Accept the connections of further sockets."""
         self._tasks += [self._loop.create_task(self._acceptor.accept_forever(listener, tls)) for listener in listeners]
+
+    def add(self, connected: socket) -> None:
+        """Serve a connected socket, such as an end of a pair; it is closed if there is no slot."""
+        if self.slots.is_full:
+            connected.close()
+            return
+        connected.setblocking(False)
+        connected.setsockopt(SOL_SOCKET, SO_SNDBUF, SEND_BUFFER)
+        self._acceptor.add(connected, "", None)
 
     async def close(self) -> None:
         """Accept no more connections, and close those that are open; the listening sockets stay as they are."""

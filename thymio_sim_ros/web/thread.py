@@ -9,7 +9,7 @@ import ssl
 import threading
 import traceback
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
-from socket import socket
+from socket import socket, socketpair
 from typing import TYPE_CHECKING, Any
 
 from thymio_sim_ros.access import TrustedProxies
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from thymio_sim_ros.web.application import Application
     from thymio_sim_ros.web.http_connections import HttpConnections
 
-__all__ = ["ServerThread"]
+__all__ = ["MAX_OWN", "ServerThread"]
 
-_MAX_OWN = 32
+MAX_OWN = 32
 """Connections of processes of this program."""
 _CLOSE_TIMEOUT_S = 3.0
 """Longest time that `close` waits; the thread is a daemon."""
@@ -85,19 +85,20 @@ class ServerThread:
         return str(found[0]), int(found[1])
 
     def listen_for_own(self) -> int:
-        """Serve a port of loopback, without TLS and time limits, for processes of this program; only in this thread.
-
-        Return its number.
-        """
-        from thymio_sim_ros.web.http_connections import HttpConnections
-
+        """Serve a port of loopback, without TLS and time limits, for processes of this program; return its number."""
         listeners = listen("127.0.0.1", 0)
         self._listeners += listeners
-        answer = self.application.answer
-        connections = HttpConnections(answer, _MAX_OWN, self._report, self.loop, is_patient=True)
-        connections.accept(listeners)
-        self._closers.append(connections.close)
+        self.call(lambda: self._own_connections.accept(listeners))
         return int(listeners[0].getsockname()[1])
+
+    def connect_own(self) -> socket:
+        """One end of a connection, without TLS and time limits, for a process of this program that can make none.
+
+        It leads to this thread alone, where a connection of TCP could be connected anew with another server.
+        """
+        ours, theirs = socketpair()
+        self.call(lambda: self._own_connections.add(ours))
+        return theirs
 
     def mount_bridge(self, bridge: BridgeServer) -> None:
         """Serve a bridge, whose loop must be that of the thread, to clients that ask for a WebSocket at `/`."""
@@ -164,6 +165,14 @@ class ServerThread:
         from thymio_sim_ros.web.http_connections import HttpConnections
 
         return HttpConnections(self.application.answer, self._max_connections, self._report, self.loop)
+
+    @functools.cached_property
+    def _own_connections(self) -> HttpConnections:
+        from thymio_sim_ros.web.http_connections import HttpConnections
+
+        connections = HttpConnections(self.application.answer, MAX_OWN, self._report, self.loop, is_patient=True)
+        self._closers.append(connections.close)
+        return connections
 
     def _run(self) -> None:
         try:

@@ -96,7 +96,7 @@ def run_connected(
 ) -> int:
     """Run a program as a member of the graph of a server; return its exit code. `prepare` comes first.
 
-    `link` is a connection of TCP with the server, where the process may not make one; `begin` is called when all is
+    `link` is a connection with the server, where the process may not make one; `begin` is called when all is
     ready for the program. The connection lasts until the threads of the program have ended, and its pools of threads.
     Python waits for both when it ends, then it calls what `atexit` has. Ctrl-C ends this process by its signal, without
     all that. Raises UsageError for a server that rejects the connection.

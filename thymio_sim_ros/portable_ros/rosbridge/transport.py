@@ -49,7 +49,7 @@ class RosbridgeTransport:
     ) -> None:
         """`codec`: for servers that take no serialized messages; `report` gets lines for the user, from any thread.
 
-        `waits`: whether `start` waits for a server if there is none. `link`: a connection of TCP with the server, which
+        `waits`: whether `start` waits for a server if there is none. `link`: a connection with the server, which
         is used first.
         """
         self._graph, self._url, self._codec, self._report, self._token = graph, url, codec, report, token

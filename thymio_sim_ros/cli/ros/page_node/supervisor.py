@@ -18,7 +18,6 @@ import contextlib
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -58,10 +57,15 @@ _IS_LINUX = sys.platform.startswith("linux")
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A program and where it runs. `level`: one of `grading.sandbox.levels`; `port`: of the server on loopback."""
+    """A program and where it runs. `level`: one of `grading.sandbox.levels`.
+
+    `link`: number of an inherited socket that is connected with the server, -1 if there is none; then `port` is that of
+    the server on loopback.
+    """
 
     level: str
     port: int
+    link: int
     token: str
     file: str
     text: str
@@ -107,16 +111,15 @@ def main() -> int:
     try:
         if not _IS_LINUX:
             with _temporary_folder() as folder:
-                _Supervisor(job, PortablePlace(folder, LIMITS), commands, None).run()
+                _Supervisor(job, PortablePlace(folder, LIMITS), commands).run()
             return 0
-        with socket.create_connection(("127.0.0.1", job.port)) as link:  # the node may make no connection
-            return _run_on_linux(job, commands, link)
+        return _run_on_linux(job, commands)
     except OSError as error:
         _say("unavailable", reason=str(error))
         return _CANNOT_ENTER
 
 
-def _run_on_linux(job: Job, commands: _Commands, link: socket.socket) -> int:
+def _run_on_linux(job: Job, commands: _Commands) -> int:
     from thymio_sim_ros.grading.sandbox.linux import namespaces
     from thymio_sim_ros.grading.sandbox.linux.confinement import Confinement
     from thymio_sim_ros.grading.sandbox.linux.launcher import confinement_of, unprivileged_user
@@ -126,7 +129,7 @@ def _run_on_linux(job: Job, commands: _Commands, link: socket.socket) -> int:
 
     def supervise(folder: Path, confinement: Confinement, *, is_namespace: bool) -> None:
         place = LinuxPlace(folder, confinement, is_namespace=is_namespace)
-        _Supervisor(job, place, commands, link).run()
+        _Supervisor(job, place, commands).run()
 
     if job.level == "namespaces":
         folder, confinement = Path(namespaces.FOLDER), Confinement(user, LIMITS)
@@ -149,8 +152,8 @@ def _temporary_folder() -> Iterator[Path]:
 class _Supervisor:
     """A node from its start to its end. Its output never fills the memory; nothing that it has started is left."""
 
-    def __init__(self, job: Job, place: Place, commands: _Commands, link: socket.socket | None) -> None:
-        self._job, self._place, self._commands, self._link = job, place, commands, link
+    def __init__(self, job: Job, place: Place, commands: _Commands) -> None:
+        self._job, self._place, self._commands = job, place, commands
         self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
         self._is_ready = self._has_begun = False
         self._ends_at = float("inf")
@@ -178,13 +181,12 @@ class _Supervisor:
     def _start(self) -> subprocess.Popen[bytes]:
         folder, job = self._place.folder, self._job
         environment = confined_environment(folder) | {"PYTHONUNBUFFERED": "1", TOKEN_VARIABLE: job.token}
-        link = -1 if self._link is None else self._link.fileno()
-        url = f"ws://127.0.0.1:{job.port}"
+        url = f"ws://127.0.0.1:{job.port}" if job.link < 0 else "ws://localhost"
         options = self._place.processes.options()
-        if self._link is not None:
-            options["pass_fds"] = (link,)
+        if job.link >= 0:
+            options["pass_fds"] = (job.link,)
         process = subprocess.Popen(
-            [sys.executable, "-P", "-m", _PROGRAM, str(link), url, job.file, *job.arguments],
+            [sys.executable, "-P", "-m", _PROGRAM, str(job.link), url, job.file, *job.arguments],
             cwd=folder / "work",
             env=environment,
             stdin=subprocess.PIPE,
