@@ -156,7 +156,10 @@ def test_a_program_that_avoids_is_built_by_mouse_mended_and_run_in_both_looks(bl
     expect(page, f"{BLOCKS} .thymio_motors_start").to_have_count(1)
 
     # a mistake is shown at its block, and the file keeps the last program without one
-    page.locator(f"{BLOCKS} .blocklyShadow .blocklyField").click()
+    field = page.locator(f"{BLOCKS} .blocklyShadow .blocklyField")
+    height = field.locator(".blocklyFieldRect").bounding_box()["height"]
+    field.click()
+    assert page.locator(".blocklyHtmlInput").bounding_box()["height"] < height + 2
     page.keyboard.type("99999\n", delay=KEY_MS)
     expect(page, VERDICT).to_contain_text("1 mistake: The number is 99999")
     playwright.expect(page.get_by_role("button", name="Run program")).to_be_disabled()

@@ -10,7 +10,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from tests.web_ui.creator_support import choose_more, click, open_creator
 from tests.web_ui.page_support import MARKS, go_on_building, wait_for_frame
-from tests.web_ui.test_page_access import AXE, FINDINGS
+from tests.web_ui.test_page_access import findings_in_all_sizes
 from thymio_sim_ros.missions import load_mission
 
 pytestmark = MARKS
@@ -80,8 +80,7 @@ def make(page):
 def test_a_mission_is_made_saved_and_opened_again(at_rest, page, tmp_path):
     open_creator(page, at_rest)
     make(page)
-    page.add_script_tag(path=str(AXE))
-    assert page.evaluate(FINDINGS) == []
+    assert findings_in_all_sizes(page) == []
     made = page.evaluate("window.thymio.built().playground.mission")
     with page.expect_download() as saving:
         choose_more(page, "save")

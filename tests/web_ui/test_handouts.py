@@ -17,7 +17,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 from tests.classroom.class_support import RunningClass
 from tests.web_ui.page_support import MARKS, open_editor, open_menu, open_page
 from tests.web_ui.test_classroom import page_of
-from tests.web_ui.test_page_access import AXE, findings
+from tests.web_ui.test_page_access import findings_in_all_sizes
 from thymio_sim_ros.cli.main import main
 from thymio_sim_ros.files import resources
 
@@ -51,13 +51,6 @@ def give(teacher, path: Path) -> None:
     teacher.locator("#handout-title").wait_for(state="hidden")
 
 
-def check(page) -> None:
-    """No serious finding of axe."""
-    if AXE.exists():
-        page.add_script_tag(path=str(AXE))
-        assert findings(page) == []
-
-
 @pytest.mark.slow
 def test_a_lesson_from_the_hand_out_to_the_marks(group: RunningClass, page, other_page, own_page, tmp_path) -> None:
     teacher, ada, jurg = page, other_page, own_page
@@ -72,7 +65,7 @@ def test_a_lesson_from_the_hand_out_to_the_marks(group: RunningClass, page, othe
     teacher.get_by_text("Nothing is handed out yet.").wait_for()
     teacher.click("[data-verb=handout]")
     teacher.fill("#handout-due", "2001-01-01T10:00")
-    check(teacher)
+    assert findings_in_all_sizes(teacher) == []
     give(teacher, task)
     teacher.locator("th .handout-name").wait_for()
     assert teacher.locator("td", has_text="not opened").count() == 2
@@ -80,7 +73,7 @@ def test_a_lesson_from_the_hand_out_to_the_marks(group: RunningClass, page, othe
     note = ada.locator(".teacher-note", has_text="Your teacher has handed out:")
     note.locator("[data-handout=newest]").click()
     ada.locator("dialog.sharing", has_text="Program, Text").wait_for()
-    check(ada)
+    assert findings_in_all_sizes(ada) == []
     ada.click("[data-share=open]")
     ada.locator(".cm-content", has_text="var done = 0").wait_for()
     note.wait_for(state="hidden")
@@ -89,12 +82,12 @@ def test_a_lesson_from_the_hand_out_to_the_marks(group: RunningClass, page, othe
     teacher.locator("td", has_text="runs: 1").wait_for()
     teacher.locator("td", has_text="late").wait_for()
     teacher.locator("td", has_text="not opened").wait_for()
-    check(teacher)
+    assert findings_in_all_sizes(teacher) == []
 
     open_page(jurg, page_of(group, "jurg"))
     jurg.locator("#pupil .pupil-new", has_text="1").wait_for()
     open_menu(jurg, "#pupil")
-    check(jurg)
+    assert findings_in_all_sizes(jurg) == []
     jurg.click("#raise-hand")
     jurg.locator("#raise-hand", has_text="Lower your hand").wait_for()
     jurg.keyboard.press("Escape")

@@ -18,6 +18,7 @@ from tests.web_ui.page_support import (
     open_menu,
     open_page,
     open_tab,
+    resize,
     wait_for_frame,
     wait_for_none,
 )
@@ -49,6 +50,20 @@ def findings(page: Any) -> list[Any]:
         page.emulate_media(color_scheme=theme, reduced_motion="reduce")
         page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
         found += [[theme, *finding] for finding in page.evaluate(FINDINGS)]
+    return found
+
+
+def findings_in_all_sizes(page: Any) -> list[Any]:
+    """What axe finds, if it is installed, on a computer, a tablet and a phone. The size is as before afterwards."""
+    if not AXE.exists():
+        return []
+    page.add_script_tag(path=str(AXE))
+    before = page.viewport_size
+    found: list[Any] = []
+    for width, height in ((1024, 768), (820, 1180), (390, 844)):
+        resize(page, width, height)
+        found += [[width, *finding] for finding in findings(page)]
+    resize(page, before["width"], before["height"])
     return found
 
 

@@ -277,8 +277,10 @@ def test_programs_of_both_kinds_of_blocks_are_built_by_fingers_on_a_phone(world,
     phone.add_script_tag(content=AXE.read_text(encoding="utf-8"))
     assert phone.evaluate(FINDINGS) == []
 
+    phone.set_viewport_size({"width": 390, "height": 700})  # as beside an open mission
     choose_in_file_menu(phone, "new")
     phone.locator("[data-new=blocks-empty]").tap()
+    phone.locator(".blocklyToolbox[layout=h]").wait_for()
     phone.locator(".blocklyToolboxCategory", has_text="Motors").tap()
     new = ".blocklyFlyout:visible .thymio_motors_start"
     phone.locator(new).first.wait_for()

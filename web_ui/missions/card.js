@@ -24,6 +24,8 @@ import { starRow } from "./stars.js";
 
 /** Narrower scenes have no room beside the card. */
 const WIDE_PX = 700;
+/** In these, at least the rest of the height stays for the playground. */
+const COVERED = 0.8;
 const NS_PER_S = 1e9;
 const NODE = "thymio-sim node my_node.py";
 
@@ -200,8 +202,7 @@ export class MissionCard {
       h(
         "div",
         { class: `mission-result ${isPassed ? "mission-passed" : "mission-failed"}` },
-        ...(isPassed ? [starRow(attempt.stars, t)] : []),
-        h("p", {}, words),
+        h("div", { class: "mission-verdict" }, ...(isPassed ? [starRow(attempt.stars, t)] : []), h("p", {}, words)),
         h(
           "div",
           { class: "mission-row" },
@@ -374,12 +375,12 @@ export class MissionCard {
   /** Fit the playground into what the card leaves free. */
   #leaveFree() {
     const { scene } = this.context;
-    const { offsetWidth, offsetHeight } = this.element;
-    const { clientWidth, clientHeight } = scene.canvas;
-    const isOver = this.element.parentElement === this.slot && clientHeight > 0;
-    const isBeside = isOver && clientWidth >= WIDE_PX && offsetHeight > clientHeight / 4;
-    const left = isBeside ? offsetWidth : 0;
-    const top = isOver && !isBeside ? Math.min(offsetHeight, clientHeight / 2) : 0;
+    const card = this.element.getBoundingClientRect();
+    const canvas = scene.canvas.getBoundingClientRect();
+    const isOver = this.element.parentElement === this.slot && canvas.height > 0;
+    const isBeside = isOver && canvas.width >= WIDE_PX && card.height > canvas.height / 4;
+    const left = isBeside ? card.right - canvas.left : 0;
+    const top = isOver && !isBeside ? Math.min(card.bottom - canvas.top, COVERED * canvas.height) : 0;
     const { insets } = scene.camera;
     if ((insets.left ?? 0) !== left || (insets.top ?? 0) !== top) scene.setInsets({ ...insets, left, top });
   }

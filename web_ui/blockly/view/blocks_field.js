@@ -13,7 +13,7 @@ import { useDialogs } from "./dialogs.js";
 const MEDIA = "./blockly/";
 /** Below this width the toolbox is under the blocks, if there is this height. */
 const NARROW_PX = 480;
-const HIGH_PX = 440;
+const HIGH_PX = 240;
 /** Distance of a program from the corner, in pixels of the page. */
 const MARGIN_PX = 20;
 
