@@ -283,18 +283,17 @@ export class MissionCard {
         "li",
         { class: isDone ? "mission-done" : "" },
         h("span", { class: "mission-box" }, ...(isDone ? [icon("check", { small: true })] : [])),
-        h("span", {}, facts.map((fact) => factText(mission, this.context.language, fact)).join(", "), ...this.#values(attempt, facts)),
+        h("span", {}, ...facts.map((fact) => h("span", { class: "mission-fact" }, factText(mission, this.context.language, fact), ...(isDone ? [] : this.#value(attempt, fact))))),
         h("span", { class: "vh" }, t(isDone ? "line.done" : "line.open")),
       );
     });
     return h("div", {}, h("h3", { class: "cap" }, t("checklist")), h("ul", { class: "mission-checklist" }, ...lines));
   }
 
-  /** What the robot has reached of a quantity, beside its goal. @param {Try | null} attempt @param {readonly string[]} facts */
-  #values(attempt, facts) {
-    return facts
-      .filter((fact) => measuredText(attempt, fact, this.context.language) !== "")
-      .map((fact) => h("b", { class: "mission-value", "data-fact": fact }, measuredText(attempt, fact, this.context.language)));
+  /** What the robot has reached of a quantity, beside its goal. @param {Try | null} attempt @param {string} fact */
+  #value(attempt, fact) {
+    const text = measuredText(attempt, fact, this.context.language);
+    return text === "" ? [] : [h("b", { class: "mission-value", "data-fact": fact }, text)];
   }
 
   /** @param {Mission} mission @param {Try | null} attempt */
