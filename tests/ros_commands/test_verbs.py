@@ -9,6 +9,7 @@ from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersR
 from rclpy.action import ActionServer, GoalResponse
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
@@ -219,6 +220,41 @@ def test_services_are_listed_and_called(run, talker):
         "requester: making request: std_srvs.srv.SetBool_Request(data=True)\n\n"
         "response:\nstd_srvs.srv.SetBool_Response(success=True, message='done')\n\n"
     )
+
+
+def test_requests_and_responses_are_printed(run, make_node, talker, capsys):
+    from rclpy.service_introspection import ServiceIntrospectionState
+
+    caller = make_node("caller")
+    client = caller.create_client(SetBool, "/lab/switch")
+    client.configure_introspection(caller.get_clock(), QoSProfile(depth=10), ServiceIntrospectionState.CONTENTS)
+    printed = []
+
+    def call():
+        printed.append(capsys.readouterr().out)
+        if "RESPONSE_RECEIVED" in "".join(printed):
+            raise KeyboardInterrupt
+        if client.service_is_ready() and caller.count_subscribers("/lab/switch/_service_event"):
+            client.call_async(SetBool.Request(data=True))
+
+    caller.create_timer(0.05, call)
+    with pytest.raises(KeyboardInterrupt):
+        run("service", "echo", "/lab/switch")
+    events = list(yaml.safe_load_all("".join(printed).rpartition("---")[0]))
+    sent = next(event for event in events if event["info"]["event_type"] == "REQUEST_SENT")
+    assert (sent["request"], sent["response"]) == ([{"data": True}], [])
+    received = next(event for event in events if event["info"]["event_type"] == "RESPONSE_RECEIVED")
+    assert received["response"] == [{"success": True, "message": "done"}]
+
+
+def test_a_service_that_reports_nothing_says_why(run, make_node, talker, capsys):
+    def stop():
+        if "neither its server nor a client has called configure_introspection" in capsys.readouterr().err:
+            raise KeyboardInterrupt
+
+    make_node("reader").create_timer(0.05, stop)
+    with pytest.raises(KeyboardInterrupt):
+        run("service", "echo", "/lab/switch")
 
 
 def test_parameters_are_listed_read_set_and_dumped(run, talker):

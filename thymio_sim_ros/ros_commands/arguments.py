@@ -29,12 +29,9 @@ def _topic() -> Iterator[tuple[str, str, Add]]:
         parser.add_argument("-v", "--verbose", action="store_true", help="also show nodes and QoS")
 
     def echo(parser: argparse.ArgumentParser) -> None:
-        parser.add_argument("topic")
-        parser.add_argument("type", nargs="?", help="such as std_msgs/msg/String; default: that of its publishers")
+        _echo_options(parser, "topic", "std_msgs/msg/String; default: that of its publishers")
         parser.add_argument("--once", action="store_true", help="end after the first message")
         parser.add_argument("--field", help="print a part of the message, such as pose.pose.position")
-        parser.add_argument("-f", "--full-length", action="store_true", help="print long lists and texts to their end")
-        parser.add_argument("--no-arr", action="store_true", help="print no lists")
 
     def window(parser: argparse.ArgumentParser) -> None:
         parser.add_argument("topic")
@@ -76,11 +73,15 @@ def _service() -> Iterator[tuple[str, str, Add]]:
     def call(parser: argparse.ArgumentParser) -> None:
         _message(parser, "service", "std_srvs/srv/SetBool")
 
+    def echo(parser: argparse.ArgumentParser) -> None:
+        _echo_options(parser, "service", "std_srvs/srv/SetBool; default: that of its servers")
+
     yield "list", "List services", lambda parser: _list_options(parser, "services")
     yield "type", "Print the type of a service", lambda parser: _name(parser, "service")
     yield "info", "Print type, clients and servers of a service", lambda parser: _name(parser, "service")
     yield "find", "List the services of a type", lambda parser: _find(parser, "services")
     yield "call", "Call a service and print its response", call
+    yield "echo", "Print the requests and responses of a service that reports them", echo
 
 
 def _param() -> Iterator[tuple[str, str, Add]]:
@@ -128,6 +129,13 @@ def _interface() -> Iterator[tuple[str, str, Add]]:
 
 def _name(parser: argparse.ArgumentParser, of: str) -> None:
     parser.add_argument(of)
+
+
+def _echo_options(parser: argparse.ArgumentParser, of: str, type_example: str) -> None:
+    parser.add_argument(of)
+    parser.add_argument("type", nargs="?", help=f"such as {type_example}")
+    parser.add_argument("-f", "--full-length", action="store_true", help="print long lists and texts to their end")
+    parser.add_argument("--no-arr", action="store_true", help="print no lists")
 
 
 def _find(parser: argparse.ArgumentParser, hidden: str) -> None:

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from thymio_sim_ros.ros_commands.member import Member, find_by_type, listed, load, print_types
 from thymio_sim_ros.ros_commands.node import split
+from thymio_sim_ros.ros_commands.topic import echoed, recorded
 from thymio_sim_ros.ros_commands.values import from_yaml
 
 __all__ = ["VERBS"]
+
+_EVENTS = "/_service_event"
+"""End of the name of the topic with the events of a service."""
+_KINDS = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")
+"""The kinds of events (service_msgs/msg/ServiceEventInfo), in the order of their numbers."""
 
 
 def _list(member: Member, options: argparse.Namespace) -> None:
@@ -50,10 +58,35 @@ def _call(member: Member, options: argparse.Namespace) -> None:
     print(f"response:\n{response!r}\n")
 
 
+def _echo(member: Member, options: argparse.Namespace) -> None:
+    if options.type is None:
+        service, name = member.find_type("service", options.service, member.services)
+    else:
+        name, _ = load(options.type, "srv")
+        service = member.check_type("service", options.service, name, member.services)
+    topic = service + _EVENTS
+
+    def show(event: Any) -> None:
+        number = event.info.event_type
+        print(
+            echoed(event, options).replace(f"event_type: {number}\n", f"event_type: {_KINDS[number]}\n", 1), flush=True
+        )
+
+    member.node.create_subscription(load(name, "srv")[1].Event, topic, show, recorded(member, topic))
+    if not member.wait(lambda: member.node.count_publishers(topic)):
+        print(
+            f"{service} reports no requests yet: neither its server nor a client has called configure_introspection",
+            file=sys.stderr,
+            flush=True,
+        )
+    member.spin_until(lambda: False)
+
+
 VERBS: Mapping[str, Callable[[Member, argparse.Namespace], None]] = {
     "list": _list,
     "type": _type,
     "info": _info,
     "find": _find,
     "call": _call,
+    "echo": _echo,
 }

@@ -14,9 +14,11 @@ from thymio_sim_ros.ros_commands.member import Member, find_by_type, listed, loa
 from thymio_sim_ros.ros_commands.values import LONGEST, from_yaml, part_of, to_yaml
 
 if TYPE_CHECKING:
+    from rclpy.qos import QoSProfile
+
     from thymio_sim_ros.portable_ros.messages.message_class import Message
 
-__all__ = ["VERBS"]
+__all__ = ["VERBS", "echoed", "recorded"]
 
 _DEPTH = 10
 _SENT = Duration(seconds=1)
@@ -62,12 +64,21 @@ def _subscribe(
         name, _ = load(given, "msg")
         topic = member.check_type("topic", options.topic, name, member.topics)
     _, kind = load(name, "msg")
-    offered = [one.qos_profile for one in member.node.get_publishers_info_by_topic(topic)]
-    member.node.create_subscription(kind, topic, callback, qos.of_recording(offered), raw=raw)
+    member.node.create_subscription(kind, topic, callback, recorded(member, topic), raw=raw)
+
+
+def recorded(member: Member, topic: str) -> QoSProfile:
+    """The profile with which a subscription gets most from the publishers that are there."""
+    return qos.of_recording([one.qos_profile for one in member.node.get_publishers_info_by_topic(topic)])
+
+
+def echoed(message: Any, options: argparse.Namespace) -> str:
+    """A message, or a part of one, as `echo` prints it."""
+    longest = None if options.full_length else LONGEST
+    return f"{to_yaml(message, longest=longest, lists=not options.no_arr)}---"
 
 
 def _echo(member: Member, options: argparse.Namespace) -> None:
-    longest = None if options.full_length else LONGEST
     count = 0
 
     def show(message: Message) -> None:
@@ -75,8 +86,7 @@ def _echo(member: Member, options: argparse.Namespace) -> None:
         if options.once and count:
             return
         count += 1
-        shown = message if options.field is None else part_of(message, options.field)
-        print(f"{to_yaml(shown, longest=longest, lists=not options.no_arr)}---", flush=True)
+        print(echoed(message if options.field is None else part_of(message, options.field), options), flush=True)
 
     _subscribe(member, options, show)
     member.spin_until(lambda: options.once and count)
