@@ -7,7 +7,7 @@ from pathlib import Path
 __all__ = ["stubs"]
 
 _FOLDER = Path(__file__).parent / "packages"
-_TYPED = ("sensor_msgs_py", "tf2_geometry_msgs", "tf2_py", "tf2_ros", "tf_transformations")
+_TYPED = ("message_filters", "sensor_msgs_py", "tf2_geometry_msgs", "tf2_py", "tf2_ros", "tf_transformations")
 """The packages of messages have stubs of their definitions."""
 _CLIENT = "from thymio_sim_ros.tf.buffer_client import BufferClient as BufferClient\n"
 _HIDDEN = {
