@@ -42,6 +42,40 @@ async function statesOf(t, served) {
   return states;
 }
 
+test("a server that wants another token says so also through a proxy that drops the close code", async (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout"] });
+  /** @type {EventTarget[]} */ const sockets = [];
+  class Refused extends EventTarget {
+    send() {}
+    constructor() {
+      super();
+      sockets.push(this);
+    }
+  }
+  const real = globalThis.WebSocket;
+  globalThis.WebSocket = /** @type {any} */ (Refused);
+  t.after(() => void (globalThis.WebSocket = real));
+  let state = INITIAL;
+  const client = new Client({
+    address: "ws://localhost/",
+    token: "of an earlier start",
+    emit: (event) => void (state = reduce(state, event)),
+    wants: () => true,
+    urgency: () => 0,
+    parameters: [],
+    isServed: async () => true,
+  });
+  client.start();
+  const data = JSON.stringify({ op: "status", level: 2, message: "the token is wrong", id: "access" });
+  sockets[0].dispatchEvent(new Event("open"));
+  sockets[0].dispatchEvent(Object.assign(new Event("message"), { data }));
+  sockets[0].dispatchEvent(Object.assign(new Event("close"), { code: 1005 }));
+  await new Promise(setImmediate);
+  t.mock.timers.tick(1000);
+  assert.equal(state.connection, "wrongToken");
+  assert.equal(sockets.length, 1);
+});
+
 test("a server that answers by HTTP only is behind something that blocks WebSockets", async (t) => {
   assert.deepEqual(await statesOf(t, [true, true, true, true]), ["lost", "lost", "blocked", "blocked"]);
 });

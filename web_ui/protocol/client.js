@@ -20,8 +20,9 @@ const RETRY_MS = 1000;
 /** Attempts after which a connection counts as blocked; a server may start between an attempt and a request. */
 const BLOCKED_ATTEMPTS = 3;
 
-/** Close code of a server that requires a token, or another one. */
-export const WRONG_TOKEN = 4401;
+/** Id of the status of a server that requires a token, or another one: it says so before it closes the connection, with a
+ * close code that not every proxy passes on. */
+const ACCESS = "access";
 
 export class Client {
   /**
@@ -52,11 +53,16 @@ export class Client {
     this.emit({ type: "connecting", address: this.address });
     const socket = new WebSocket(this.address, [...SUBPROTOCOLS, ...tokenProtocols(this.token)]);
     socket.binaryType = "arraybuffer";
+    let isRefused = false;
+    const emit = (/** @type {SessionEvent} */ event) => {
+      isRefused ||= event.type === "status" && event.status.id === ACCESS;
+      this.emit(event);
+    };
     socket.addEventListener("open", () => {
       this.blocked = 0;
       this.session = new Session({
         send: (data) => socket.send(/** @type {string | BufferSource} */ (data)),
-        emit: this.emit,
+        emit,
         wants: this.wants,
         urgency: this.urgency,
         parameters: this.parameters,
@@ -64,12 +70,12 @@ export class Client {
       this.emit({ type: "connected" });
     });
     socket.addEventListener("message", ({ data }) => this.session?.receive(data));
-    socket.addEventListener("close", async ({ code }) => {
+    socket.addEventListener("close", async () => {
       if (this.session === null) this.blocked = (await this.isServed()) ? this.blocked + 1 : 0;
       this.session?.close();
       this.session = null;
       this.emit({ type: "disconnected", isBlocked: this.blocked >= BLOCKED_ATTEMPTS });
-      if (code === WRONG_TOKEN) return this.emit({ type: "refused", withToken: this.token !== "" });
+      if (isRefused) return this.emit({ type: "refused", withToken: this.token !== "" });
       setTimeout(() => this.start(), RETRY_MS);
     });
   }
